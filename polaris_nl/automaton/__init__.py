@@ -1,0 +1,1 @@
+"""The goal automaton: values, edits, undo, validation and program files."""

@@ -1,0 +1,109 @@
+"""What is wrong with a program before any planning: its structure and its names."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Literal as OneOf
+
+import networkx as nx
+
+from polaris_nl.automaton.automaton import START, Automaton, Transition
+from polaris_nl.model.check import Types, action_faults, formula_faults
+from polaris_nl.model.world import World
+
+Cause = OneOf["structure", "invalid", "underspecified"]
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """Something that keeps a program from being planned.
+
+    Attributes:
+        cause: `structure` (not a tree), `invalid` (names or types), `underspecified` (DESIGN section 5 point 3).
+        text: a sentence for a person, with a way out.
+    """
+
+    cause: Cause
+    text: str
+    checkpoint: str | None = None
+    transition: str | None = None
+
+
+def validate(automaton: Automaton, world: World) -> tuple[Fault, ...]:
+    """Every structural fault, unknown name, wrong type and underspecified pair of a program."""
+    types = {**world.domain.constants, **{e.name: e.type for e in world.entities.values()}}
+    return (
+        *_structure(automaton),
+        *_names(automaton, world, types),
+        *_underspecified(automaton),
+    )
+
+
+def _structure(automaton: Automaton) -> Iterator[Fault]:
+    start = automaton.checkpoints.get(START)
+    if start is None:
+        yield Fault("structure", f"The program has no start; its first checkpoint is {START}, called start.")
+        return
+    if start.goals or start.action:
+        yield Fault("structure", "The start has goals; move them to a checkpoint after it.", START)
+    for transition in automaton.transitions.values():
+        for end in (transition.source, transition.target):
+            if end not in automaton.checkpoints:
+                text = f"The transition {transition.id} names the checkpoint {end}, which isn't there; remove it."
+                yield Fault("structure", text, transition=transition.id)
+    ways_in = Counter(t.target for t in automaton.transitions.values())
+    for checkpoint in automaton.checkpoints.values():
+        if checkpoint.id == START and ways_in[START]:
+            yield Fault("structure", "Something leads back to the start, and programs can't loop yet.", START)
+        if ways_in[checkpoint.id] > 1:
+            text = f"{ways_in[checkpoint.id]} transitions lead to {checkpoint.name}; give each a checkpoint of its own."
+            yield Fault("structure", text, checkpoint.id)
+    reached = nx.descendants(automaton.graph, START) | {START}
+    for checkpoint in automaton.checkpoints.values():
+        if checkpoint.id not in reached:
+            text = f"Nothing leads to {checkpoint.name}; connect it to a checkpoint, or remove it."
+            yield Fault("structure", text, checkpoint.id)
+    names = Counter(c.name for c in automaton.checkpoints.values())
+    for name in sorted(name for name, count in names.items() if count > 1):
+        yield Fault("structure", f"{names[name]} checkpoints are called {name}; rename all but one.")
+
+
+def _names(automaton: Automaton, world: World, types: Types) -> Iterator[Fault]:
+    for checkpoint in automaton.checkpoints.values():
+        for goal in checkpoint.goals:
+            for text in formula_faults(goal, world.domain, types):
+                yield Fault("invalid", f"In {checkpoint.name}: {text}", checkpoint.id)
+        if checkpoint.action is not None:
+            for text in action_faults(checkpoint.action, world.domain, types):
+                yield Fault("invalid", f"In {checkpoint.name}: {text}", checkpoint.id)
+    for transition in automaton.transitions.values():
+        for literal in transition.when:
+            for text in formula_faults(literal, world.domain, types):
+                target = automaton.checkpoints.get(transition.target)
+                where = f"to {target.name}" if target else transition.id
+                yield Fault("invalid", f"In the conditional {where}: {text}", transition=transition.id)
+
+
+def _underspecified(automaton: Automaton) -> Iterator[Fault]:
+    for checkpoint in automaton.checkpoints.values():
+        seen: dict[object, Transition] = {}
+        for transition in automaton.outgoing(checkpoint.id):
+            first = seen.setdefault((transition.conditional, transition.on), transition)
+            if first is not transition:
+                yield _same_conditional(automaton, first, transition)
+
+
+def _same_conditional(automaton: Automaton, first: Transition, second: Transition) -> Fault:
+    def name(checkpoint: str) -> str:
+        found = automaton.checkpoints.get(checkpoint)
+        return found.name if found else checkpoint
+
+    source, one, two = name(first.source), name(first.target), name(second.target)
+    condition = f"under the same condition, {' and '.join(map(str, first.when))}" if first.when else "without a condition"
+    text = (
+        f"From {source}, both {one} and {two} come next {condition}, so the robot can't tell which to take;"
+        f" give one of them another condition, or put one after the other."
+    )
+    return Fault("underspecified", text, second.target, second.id)

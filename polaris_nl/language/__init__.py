@@ -1,0 +1,1 @@
+"""From utterances to edits, questions, answers, commands and refusals."""
