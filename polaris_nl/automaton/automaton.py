@@ -1,7 +1,8 @@
 """The goal automaton: checkpoints joined by conditional transitions.
 
-After Porfirio, Roberts and Hiatt, "Goal-Oriented End-User Programming of Robots" (HRI 2024), section 3.2: the tuple
-(P, C, Lc, ->, c0). `Checkpoint.goals` is Lc, and c0 is the always empty checkpoint `start`.
+After Porfirio, Roberts and Hiatt, "Goal-Oriented End-User Programming of Robots" (HRI 2024),
+section 3.2: the tuple (P, C, Lc, ->, c0). `Checkpoint.goals` is Lc, and c0 is the always empty
+checkpoint `start`.
 """
 
 from __future__ import annotations
@@ -208,7 +209,9 @@ class Automaton:
             {
                 k: t
                 for k, t in self.transitions.items()
-                if k not in transitions and t.source not in checkpoints and t.target not in checkpoints
+                if k not in transitions
+                and t.source not in checkpoints
+                and t.target not in checkpoints
             },
         )
 

@@ -1,7 +1,11 @@
-"""Edits as JSON values, for `--json`, logs and repairs: `{"edit": "rename-checkpoint", "checkpoint": "c1", ...}`."""
+"""Edits as JSON values, for `--json`, logs and repairs.
+
+An example: `{"edit": "rename-checkpoint", "checkpoint": "c1", "name": "told"}`.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from polaris_nl.automaton.automaton import Automaton
@@ -54,12 +58,21 @@ def edit_json(edit: Edit) -> dict[str, Any]:
         case RenameCheckpoint(checkpoint, name):
             return {"edit": "rename-checkpoint", "checkpoint": checkpoint, "name": name}
         case SetGoals(checkpoint, goals, action):
-            value: dict[str, Any] = {"edit": "set-goals", "checkpoint": checkpoint, "goals": [str(g) for g in goals]}
+            value: dict[str, Any] = {
+                "edit": "set-goals",
+                "checkpoint": checkpoint,
+                "goals": [str(g) for g in goals],
+            }
             return value if action is None else {**value, "action": str(action)}
         case SetConditional(transition, when):
             return {"edit": "set-conditional", "transition": transition, "when": _texts(when)}
         case MoveCheckpoint(checkpoint, to, when):
-            return {"edit": "move-checkpoint", "checkpoint": checkpoint, "to": to, "when": _texts(when)}
+            return {
+                "edit": "move-checkpoint",
+                "checkpoint": checkpoint,
+                "to": to,
+                "when": _texts(when),
+            }
         case Connect(transition):
             return {"edit": "connect", "transition": transition_json(transition)}
         case Disconnect(transition):
@@ -78,14 +91,15 @@ def edit_of(value: Any) -> Edit:
         kind = value.get("edit") if isinstance(value, dict) else value
         raise FormatError(f"{kind!r} is no edit.{did_you_mean(str(kind), _READ)}")
     try:
-        edit: Edit = _READ[value["edit"]](value)
+        return _READ[value["edit"]](value)
     except (KeyError, TypeError, AttributeError) as error:
         raise FormatError(f"The edit {value['edit']} lacks or garbles {error}.") from error
-    return edit
 
 
-_READ = {
-    "add-checkpoint": lambda v: AddCheckpoint(checkpoint_of(v["checkpoint"]), transition_of(v["transition"])),
+_READ: dict[str, Callable[[Any], Edit]] = {
+    "add-checkpoint": lambda v: AddCheckpoint(
+        checkpoint_of(v["checkpoint"]), transition_of(v["transition"])
+    ),
     "insert-checkpoint": lambda v: InsertCheckpoint(
         checkpoint_of(v["checkpoint"]), v["on"], v["onward"], _literals(v.get("when", []))
     ),
@@ -97,7 +111,9 @@ _READ = {
         parse_action(v["action"]) if "action" in v else None,
     ),
     "set-conditional": lambda v: SetConditional(v["transition"], _literals(v["when"])),
-    "move-checkpoint": lambda v: MoveCheckpoint(v["checkpoint"], v["to"], _literals(v.get("when", []))),
+    "move-checkpoint": lambda v: MoveCheckpoint(
+        v["checkpoint"], v["to"], _literals(v.get("when", []))
+    ),
     "connect": lambda v: Connect(transition_of(v["transition"])),
     "disconnect": lambda v: Disconnect(v["transition"]),
     "replace-program": lambda v: ReplaceProgram(_automaton(v["program"])),

@@ -1,7 +1,8 @@
 """Edits: the changes that can be made to a goal automaton, as values.
 
-`apply(automaton, edit)` makes the changed automaton. Edits name checkpoints and transitions by id, and bring the ids of what they make
-(`Automaton.fresh_checkpoint_id`), so that a list of edits can build on itself, be logged, and be applied again.
+`apply(automaton, edit)` makes the changed automaton. Edits name checkpoints and transitions by id,
+and bring the ids of what they make (`Automaton.fresh_checkpoint_id`), so that a list of edits can
+build on itself, be logged, and be applied again.
 """
 
 from __future__ import annotations
@@ -28,8 +29,8 @@ class AddCheckpoint:
 class InsertCheckpoint:
     """A new checkpoint on a transition.
 
-    `on` ends at the new checkpoint and keeps its conditional; a transition with id `onward` leads on to
-    where it ended before, under the conditional `when`.
+    `on` ends at the new checkpoint and keeps its conditional; a transition with id `onward` leads
+    on to where it ended before, under the conditional `when`.
     """
 
     checkpoint: Checkpoint
@@ -140,7 +141,9 @@ def apply_all(automaton: Automaton, edits: Iterable[Edit]) -> Automaton:
 
 def _add(automaton: Automaton, edit: AddCheckpoint) -> Automaton:
     if edit.transition.target != edit.checkpoint.id:
-        raise EditError(f"The transition {edit.transition.id} has to lead to the new checkpoint {edit.checkpoint.id}.")
+        raise EditError(
+            f"The transition {edit.transition.id} has to lead to the new checkpoint {edit.checkpoint.id}."
+        )
     automaton.checkpoint(edit.transition.source)
     _new(automaton, edit.checkpoint, edit.transition.id)
     return automaton.with_checkpoint(edit.checkpoint).with_transition(edit.transition)
@@ -201,9 +204,13 @@ def _move(automaton: Automaton, edit: MoveCheckpoint) -> Automaton:
     automaton.checkpoint(edit.to)
     if edit.to in automaton.subtree(edit.checkpoint):
         name, to = automaton.checkpoints[edit.checkpoint].name, automaton.checkpoints[edit.to].name
-        raise EditError(f"{name} can't come after {to}, which comes after it; move {to} away first.")
+        raise EditError(
+            f"{name} can't come after {to}, which comes after it; move {to} away first."
+        )
     old = automaton.incoming(edit.checkpoint)
-    new = Transition(old.id if old else automaton.fresh_transition_id(), edit.to, edit.checkpoint, edit.when)
+    new = Transition(
+        old.id if old else automaton.fresh_transition_id(), edit.to, edit.checkpoint, edit.when
+    )
     return automaton.with_transition(new)
 
 
@@ -214,7 +221,9 @@ def _connect(automaton: Automaton, edit: Connect) -> Automaton:
         raise EditError(f"There is a transition {edit.transition.id} already.")
     if automaton.incoming(edit.transition.target) is not None:
         name = automaton.checkpoints[edit.transition.target].name
-        raise EditError(f"Something leads to {name} already; move it instead, or add a second checkpoint.")
+        raise EditError(
+            f"Something leads to {name} already; move it instead, or add a second checkpoint."
+        )
     if edit.transition.source in automaton.subtree(edit.transition.target):
         raise EditError("That would close a loop, and programs can't loop yet.")
     return automaton.with_transition(edit.transition)
@@ -249,7 +258,9 @@ def _new(automaton: Automaton, checkpoint: Checkpoint, transition: str) -> None:
     if transition in automaton.transitions:
         raise EditError(f"There is a transition {transition} already.")
     if automaton.named(checkpoint.name) is not None:
-        raise EditError(f"Another checkpoint is called {checkpoint.name} already; choose another name.")
+        raise EditError(
+            f"Another checkpoint is called {checkpoint.name} already; choose another name."
+        )
 
 
 def _not_start(automaton: Automaton, checkpoint: str, done: str) -> None:

@@ -43,7 +43,11 @@ def program_json(program: Program) -> dict[str, Any]:
 
 def checkpoint_json(checkpoint: Checkpoint) -> dict[str, Any]:
     """The JSON value of a checkpoint."""
-    value: dict[str, Any] = {"id": checkpoint.id, "name": checkpoint.name, "goals": [str(g) for g in checkpoint.goals]}
+    value: dict[str, Any] = {
+        "id": checkpoint.id,
+        "name": checkpoint.name,
+        "goals": [str(g) for g in checkpoint.goals],
+    }
     if checkpoint.action is not None:
         value["action"] = str(checkpoint.action)
     return value
@@ -78,19 +82,28 @@ def program_of(value: Any) -> Program:
     for item in _list(value, "checkpoints", "the program"):
         checkpoint = checkpoint_of(item)
         if checkpoint.id in checkpoints:
-            raise FormatError(f"Two checkpoints have the id {checkpoint.id}; give one of them another.")
+            raise FormatError(
+                f"Two checkpoints have the id {checkpoint.id}; give one of them another."
+            )
         checkpoints[checkpoint.id] = checkpoint
     transitions: dict[str, Transition] = {}
     for item in _list(value, "transitions", "the program"):
         transition = transition_of(item)
         if transition.id in transitions:
-            raise FormatError(f"Two transitions have the id {transition.id}; give one of them another.")
+            raise FormatError(
+                f"Two transitions have the id {transition.id}; give one of them another."
+            )
         transitions[transition.id] = transition
     if not checkpoints:
         checkpoints = dict(Automaton().checkpoints)
     elif START not in checkpoints:
-        raise FormatError(f"The program has no start: a checkpoint with the id {START} and no goals.")
-    world, domain = _text(value, "world", "the program", ""), _text(value, "domain", "the program", "")
+        raise FormatError(
+            f"The program has no start: a checkpoint with the id {START} and no goals."
+        )
+    world, domain = (
+        _text(value, "world", "the program", ""),
+        _text(value, "domain", "the program", ""),
+    )
     return Program(Automaton(checkpoints, transitions), domain, world)
 
 
@@ -104,10 +117,14 @@ def checkpoint_of(value: Any) -> Checkpoint:
     checkpoint = _text(item, "id", "a checkpoint")
     what = f"the checkpoint {checkpoint}"
     action = parse_action(_text(item, "action", what)) if item.get("action") is not None else None
-    goals = tuple(parse_formula(_string(goal, f"a goal of {what}")) for goal in _list(item, "goals", what))
+    goals = tuple(
+        parse_formula(_string(goal, f"a goal of {what}")) for goal in _list(item, "goals", what)
+    )
     if goals and action is not None:
         raise FormatError(f"{what} has goals and insists on an action; leave one of them out.")
-    return Checkpoint(checkpoint, _text(item, "name", what, checkpoint), tuple(dict.fromkeys(goals)), action)
+    return Checkpoint(
+        checkpoint, _text(item, "name", what, checkpoint), tuple(dict.fromkeys(goals)), action
+    )
 
 
 def transition_of(value: Any) -> Transition:
@@ -154,7 +171,9 @@ def read_program(path: Path) -> Program:
     """
     try:
         if path.stat().st_size > MAX_BYTES:
-            raise ProgramError(f"A program file of more than {MAX_BYTES // 10**6} MB is refused.", path)
+            raise ProgramError(
+                f"A program file of more than {MAX_BYTES // 10**6} MB is refused.", path
+            )
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         reason = "it is not UTF-8 text" if isinstance(error, UnicodeDecodeError) else error.strerror
@@ -162,7 +181,8 @@ def read_program(path: Path) -> Program:
     try:
         return program_of(json.loads(text))
     except json.JSONDecodeError as error:
-        reason = f"This is no JSON ({error.msg.lower()}); the file may be cut off, and a copy from before may help."
+        problem = error.msg.lower()
+        reason = f"This is no JSON ({problem}); the file may be cut off: take an earlier copy."
         raise ProgramError(reason, path, error.lineno) from error
     except RecursionError as error:
         raise ProgramError("The file is nested too deeply.", path) from error
@@ -206,12 +226,16 @@ def write_whole(path: Path, text: str) -> None:
     except OSError as error:
         if temporary is not None:
             temporary.unlink(missing_ok=True)
-        raise FileError(f"Can't write {path}: {error.strerror}. Choose another place, or make room.") from error
+        raise FileError(
+            f"Can't write {path}: {error.strerror}. Choose another place, or make room."
+        ) from error
 
 
 def _object(value: Any, what: str, fields: tuple[str, ...]) -> dict[str, Any]:
     if not isinstance(value, dict):
-        raise FormatError(f"{what} is a JSON object with {', '.join(fields)}, not {json.dumps(value)[:40]}.")
+        raise FormatError(
+            f"{what} is a JSON object with {', '.join(fields)}, not {json.dumps(value)[:40]}."
+        )
     for key in value:
         if key not in fields:
             raise FormatError(f"{what} has no field {key!r}; it has {', '.join(fields)}.")

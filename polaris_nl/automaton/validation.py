@@ -21,7 +21,8 @@ class Fault:
     """Something that keeps a program from being planned.
 
     Attributes:
-        cause: `structure` (not a tree), `invalid` (names or types), `underspecified` (DESIGN section 5 point 3).
+        cause: `structure` (not a tree), `invalid` (names or types), `underspecified` (DESIGN
+            section 5 point 3).
         text: a sentence for a person, with a way out.
     """
 
@@ -44,21 +45,27 @@ def validate(automaton: Automaton, world: World) -> tuple[Fault, ...]:
 def _structure(automaton: Automaton) -> Iterator[Fault]:
     start = automaton.checkpoints.get(START)
     if start is None:
-        yield Fault("structure", f"The program has no start; its first checkpoint is {START}, called start.")
+        yield Fault(
+            "structure", f"The program has no start; its first checkpoint is {START}, called start."
+        )
         return
     if start.goals or start.action:
         yield Fault("structure", "The start has goals; move them to a checkpoint after it.", START)
     for transition in automaton.transitions.values():
         for end in (transition.source, transition.target):
             if end not in automaton.checkpoints:
-                text = f"The transition {transition.id} names the checkpoint {end}, which isn't there; remove it."
+                text = f"The transition {transition.id} names {end}, which isn't there; remove it."
                 yield Fault("structure", text, transition=transition.id)
     ways_in = Counter(t.target for t in automaton.transitions.values())
     for checkpoint in automaton.checkpoints.values():
         if checkpoint.id == START and ways_in[START]:
-            yield Fault("structure", "Something leads back to the start, and programs can't loop yet.", START)
+            yield Fault(
+                "structure",
+                "Something leads back to the start, and programs can't loop yet.",
+                START,
+            )
         if ways_in[checkpoint.id] > 1:
-            text = f"{ways_in[checkpoint.id]} transitions lead to {checkpoint.name}; give each a checkpoint of its own."
+            text = f"Several transitions lead to {checkpoint.name}; give each a checkpoint."
             yield Fault("structure", text, checkpoint.id)
     reached = nx.descendants(automaton.graph, START) | {START}
     for checkpoint in automaton.checkpoints.values():
@@ -67,7 +74,9 @@ def _structure(automaton: Automaton) -> Iterator[Fault]:
             yield Fault("structure", text, checkpoint.id)
     names = Counter(c.name for c in automaton.checkpoints.values())
     for name in sorted(name for name, count in names.items() if count > 1):
-        yield Fault("structure", f"{names[name]} checkpoints are called {name}; rename all but one.")
+        yield Fault(
+            "structure", f"{names[name]} checkpoints are called {name}; rename all but one."
+        )
 
 
 def _names(automaton: Automaton, world: World, types: Types) -> Iterator[Fault]:
@@ -83,7 +92,9 @@ def _names(automaton: Automaton, world: World, types: Types) -> Iterator[Fault]:
             for text in formula_faults(literal, world.domain, types):
                 target = automaton.checkpoints.get(transition.target)
                 where = f"to {target.name}" if target else transition.id
-                yield Fault("invalid", f"In the conditional {where}: {text}", transition=transition.id)
+                yield Fault(
+                    "invalid", f"In the conditional {where}: {text}", transition=transition.id
+                )
 
 
 def _underspecified(automaton: Automaton) -> Iterator[Fault]:
@@ -101,7 +112,11 @@ def _same_conditional(automaton: Automaton, first: Transition, second: Transitio
         return found.name if found else checkpoint
 
     source, one, two = name(first.source), name(first.target), name(second.target)
-    condition = f"under the same condition, {' and '.join(map(str, first.when))}" if first.when else "without a condition"
+    condition = (
+        f"under the same condition, {' and '.join(map(str, first.when))}"
+        if first.when
+        else "without a condition"
+    )
     text = (
         f"From {source}, both {one} and {two} come next {condition}, so the robot can't tell which to take;"
         f" give one of them another condition, or put one after the other."

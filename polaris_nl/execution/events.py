@@ -1,8 +1,8 @@
 """Event records: everything that a session and a run report, as values.
 
-They are what is logged (each class is a topic), what the screens show, and what a replay compares. Fields are JSON
-values, so that `dataclasses.asdict` is the message and the schema follows from the annotations. Literals and actions
-are PDDL text.
+They are what is logged (each class is a topic), what the screens show, and what a replay compares.
+Fields are JSON values, so that `dataclasses.asdict` is the message and the schema follows from the
+annotations. Literals and actions are PDDL text.
 """
 
 from __future__ import annotations
@@ -19,7 +19,8 @@ class Event:
     """Base of all records.
 
     Attributes:
-        time: seconds since the epoch; in virtual time, seconds since the run's start plus the start's time.
+        time: seconds since the epoch; in virtual time, seconds since the run's start plus the
+            start's time.
         text: one sentence for a person, or "".
     """
 
@@ -45,7 +46,7 @@ class Heard(Event):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Understood(Event):
-    """An utterance was interpreted; `interpretation` is the object that `say --json` prints, without the program."""
+    """An utterance was interpreted; `interpretation` is what `say --json` prints, without program."""
 
     topic: ClassVar[str] = "/polaris/understood"
 
@@ -152,7 +153,7 @@ class GoalConfirmed(Event):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RobotReported(Event):
-    """The robot reported on a goal: accepted, rejected, succeeded, failed, cancelled. Never believed alone."""
+    """The robot reported on a goal: accepted, rejected, succeeded, ...; never believed alone."""
 
     topic: ClassVar[str] = "/polaris/robot"
 
@@ -275,7 +276,7 @@ class Said(Event):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Failed(Event):
-    """Something of the program's own went wrong (the planner crashed, the disk is full), and what it did about it."""
+    """Something of the program's own went wrong (planner, disk), and what it did about it."""
 
     topic: ClassVar[str] = "/polaris/failure"
     severity: ClassVar[Severity] = "error"
@@ -284,8 +285,8 @@ class Failed(Event):
 
 
 EVENTS: tuple[type[Event], ...] = (
-    Heard, Understood, Edited, Planned, RunStarted, RunEnded, StateChanged, CheckpointReached, GoalSent, GoalConfirmed,
-    RobotReported, Observed, Waiting, TransitionTaken, Deviated, Recovered, Replanned, Halted, CommandGiven,
-    PersonActed, Said, Failed,
+    Heard, Understood, Edited, Planned, RunStarted, RunEnded, StateChanged, CheckpointReached,
+    GoalSent, GoalConfirmed, RobotReported, Observed, Waiting, TransitionTaken, Deviated, Recovered,
+    Replanned, Halted, CommandGiven, PersonActed, Said, Failed,
 )  # fmt: skip
 """Every record class; a log has one channel for each that occurs."""

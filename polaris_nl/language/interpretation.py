@@ -43,18 +43,30 @@ class Refusal:
 
 @dataclass(frozen=True, slots=True)
 class Query:
-    """A question by the user that only the session can answer, because it needs the plan or the state.
+    """A question by the user that only the session can answer, because it needs the plan or the
+    state.
 
     Attributes:
-        kind: what is asked: the plan (of a branch), the program, a checkpoint, where an entity is, why an action is there, what
-            can be said.
+        kind: what is asked: the plan (of a branch), the program, a checkpoint, where an entity is,
+            why an action is there, what can be said.
         checkpoint: the checkpoint that it is about, or None.
         when: the conditional that it is about ("what will you do if she dismisses it").
         entity: the entity that it is about, or "".
         literal: the fact that it is about ("is the cupboard open"), or None.
     """
 
-    kind: OneOf["plan", "program", "checkpoint", "where", "is-it", "why", "help", "problems", "world", "status"]
+    kind: OneOf[
+        "plan",
+        "program",
+        "checkpoint",
+        "where",
+        "is-it",
+        "why",
+        "help",
+        "problems",
+        "world",
+        "status",
+    ]
     checkpoint: str | None = None
     when: tuple[Literal, ...] = ()
     entity: str = ""
@@ -82,7 +94,8 @@ class Interpretation:
 
     Attributes:
         outcome: what is to be done with it.
-        edits: the change to the program, for `applied` (and for `question` where the clear part is kept).
+        edits: the change to the program, for `applied` (and for `question` where the clear part is
+            kept).
         say: what to answer, one sentence or two; for a query the session says the answer.
         partial: the clear part of the utterance is applied although a question is open.
         readings: all readings, the winner first.

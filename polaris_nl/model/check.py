@@ -61,7 +61,9 @@ def literal_faults(literal: Literal, domain: Domain, types: Types) -> Iterator[s
         hint = did_you_mean(literal.predicate, domain.predicates)
         yield f"The domain {domain.name} has no predicate {literal.predicate}.{hint}"
         return
-    yield from _argument_faults(str(literal.atom), literal.args, predicate.parameters, domain, types)
+    yield from _argument_faults(
+        str(literal.atom), literal.args, predicate.parameters, domain, types
+    )
 
 
 def action_faults(action: Action, domain: Domain, types: Types) -> Iterator[str]:

@@ -51,7 +51,11 @@ def world_path(name: str, relative_to: Path | None = None) -> Path:
 
 
 def _find(
-    name: str, relative_to: Path | None, shipped: dict[str, Path], what: str, suffixes: tuple[str, ...]
+    name: str,
+    relative_to: Path | None,
+    shipped: dict[str, Path],
+    what: str,
+    suffixes: tuple[str, ...],
 ) -> Path:
     if name in shipped:
         return shipped[name]

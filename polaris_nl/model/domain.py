@@ -14,7 +14,7 @@ from polaris_nl.model.state import MutexGroup
 
 OBJECT = "object"
 KIND = "kind"
-"""The pseudo-predicate `(kind ?d dish)` in quantified goals; it is read from the world, not from the domain."""
+"""The predicate of `(kind ?d dish)` in quantified goals, which is read from the world."""
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -76,13 +76,15 @@ class Domain:
 
     Attributes:
         name: as in the file.
-        parents: each declared type and its parent types. A domain that declares `object` itself as one type
-            among others means by it a thing that can be grasped, not the root of all types.
+        parents: each declared type and its parent types. A domain that declares `object` itself as
+            one type among others means by it a thing that can be grasped, not the root of all
+            types.
         predicates: by name; operators: by name.
         constants: entities that the domain itself declares, name to type.
-        exogenous: predicates that a person brings about or may bring about (`; EXOGENOUS:` comments;
-            without any, all that no operator changes).
-        mutexes: groups that the file states in `; MUTEX:` comments; the others are found from the operators.
+        exogenous: predicates that a person brings about or may bring about (`; EXOGENOUS:`
+            comments; without any, all that no operator changes).
+        mutexes: groups that the file states in `; MUTEX:` comments; the others are found from the
+            operators.
         source: the PDDL text, as it was read.
         path: where it was read, or None.
     """
@@ -111,7 +113,9 @@ class Domain:
         """Whether every entity of type `kind` is one of type `wanted`."""
         if kind == wanted or (wanted == OBJECT and not self.object_is_a_type):
             return True
-        return any(self.is_a(parent, wanted) for parent in self.parents.get(kind, ()) if parent != kind)
+        return any(
+            self.is_a(parent, wanted) for parent in self.parents.get(kind, ()) if parent != kind
+        )
 
     def fits(self, kind: str, parameter: Variable) -> bool:
         """Whether an entity of type `kind` may stand for a parameter."""
@@ -131,7 +135,9 @@ class Domain:
     def robot_can_change(self, predicate: str) -> bool:
         """Whether any operator makes atoms of a predicate true or false."""
         return any(
-            e.predicate == predicate for op in self.operators.values() for e in effect_literals(op.effect)
+            e.predicate == predicate
+            for op in self.operators.values()
+            for e in effect_literals(op.effect)
         )
 
     def people_can_change(self, predicate: str) -> bool:

@@ -55,8 +55,8 @@ def instances_of(formula: Quantified, world: World) -> Iterator[Formula]:
 def ground_goals(goals: Iterable[Goal], state: State, world: World) -> tuple[Literal, ...]:
     """The literals that goals ask for, quantifiers expanded (DESIGN section 5 point 7).
 
-    A condition inside `for all` is read in the given state: "put every dirty dish on the countertop" is
-    about the dishes that are dirty when the robot gets there.
+    A condition inside `for all` is read in the given state: "put every dirty dish on the
+    countertop" is about the dishes that are dirty when the robot gets there.
 
     Raises:
         FormatError: a goal asks for an alternative (`or`, `exists`), which is no set of literals.
@@ -90,7 +90,9 @@ def applicable(action: Action, operator: Operator, state: State, world: World) -
 
 def effects(action: Action, operator: Operator, state: State, world: World) -> tuple[Literal, ...]:
     """What an action makes true, started in a state: negative literals first, as PDDL applies them."""
-    found = tuple(dict.fromkeys(_effects(bind(operator.effect, operator.binding(action)), state, world)))
+    found = tuple(
+        dict.fromkeys(_effects(bind(operator.effect, operator.binding(action)), state, world))
+    )
     added = tuple(e for e in found if e.positive)
     return (*(e for e in found if not e.positive and e.atom not in added), *added)
 

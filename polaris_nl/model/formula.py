@@ -163,7 +163,9 @@ def formula_of(node: Node) -> Formula:
         FormatError: the expression is no formula, named with its line.
     """
     if isinstance(node, Word):
-        raise FormatError(f"A fact in parentheses was expected, but {node.text!r} found.", line=node.line)
+        raise FormatError(
+            f"A fact in parentheses was expected, but {node.text!r} found.", line=node.line
+        )
     head, rest = node.head, node.items[1:]
     if head in ("and", "or"):
         parts = tuple(formula_of(part) for part in rest)
@@ -190,10 +192,13 @@ def typed_list(node: Node) -> Iterator[Variable]:
     """Reads `(?a ?b - type ?c - (either t1 t2))`; names without a type get none.
 
     Raises:
-        FormatError: a type is missing after a dash, or something else than a name stands in the list.
+        FormatError: a type is missing after a dash, or something else than a name stands in the
+        list.
     """
     if isinstance(node, Word):
-        raise FormatError(f"A list in parentheses was expected, but {node.text!r} found.", line=node.line)
+        raise FormatError(
+            f"A list in parentheses was expected, but {node.text!r} found.", line=node.line
+        )
     names: list[str] = []
     items = iter(node.items)
     for item in items:
@@ -253,7 +258,9 @@ def bind(formula: Formula, binding: Binding) -> Formula:
 def _only(node: Group, count: int) -> tuple[Node, ...]:
     rest = node.items[1:]
     if len(rest) != count:
-        raise FormatError(f"({node.head} ...) takes {count} parts, but has {len(rest)}.", line=node.line)
+        raise FormatError(
+            f"({node.head} ...) takes {count} parts, but has {len(rest)}.", line=node.line
+        )
     return rest
 
 

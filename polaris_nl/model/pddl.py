@@ -1,11 +1,11 @@
 """Reads PDDL domain files.
 
-Understood are types, constants, predicates and operators of STRIPS and ADL; what planning with costs or time adds
-is kept in the source text for the planner and otherwise passed over. Four kinds of comment carry what PDDL has no
-syntax for:
+Understood are types, constants, predicates and operators of STRIPS and ADL; what planning with
+costs or time adds is kept in the source text for the planner and otherwise passed over. Four kinds
+of comment carry what PDDL has no syntax for:
 
-    ; NL: [0] is near [1]                     phrases for the predicate or operator above or beside it
-    ; INTERNAL                                never shown to users
+    ; NL: [0] is near [1]                     phrases for the predicate or operator above or beside
+    it ; INTERNAL                                never shown to users
     ; MUTEX: (acknowledged ?m) (dismissed ?m)  at most one of them holds (see `MutexGroup`)
     ; EXOGENOUS: at in acknowledged            people bring these about (without such a
                                               comment: whatever no operator changes)
@@ -35,7 +35,9 @@ def read_domain(path: Path) -> Domain:
     """
     try:
         if path.stat().st_size > MAX_BYTES:
-            raise DomainError(f"A domain file of more than {MAX_BYTES // 10**6} MB is refused.", path)
+            raise DomainError(
+                f"A domain file of more than {MAX_BYTES // 10**6} MB is refused.", path
+            )
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         reason = "it is not UTF-8 text" if isinstance(error, UnicodeDecodeError) else error.strerror
@@ -57,7 +59,9 @@ def parse_domain(text: str, path: Path | None = None) -> Domain:
     nodes = read_all(text)
     root = nodes[0] if nodes else None
     if not isinstance(root, Group) or root.head != "define" or len(root.items) < 2:
-        raise DomainError("This is no PDDL domain: it doesn't start with (define (domain ...", path, 1)
+        raise DomainError(
+            "This is no PDDL domain: it doesn't start with (define (domain ...", path, 1
+        )
     name_node = root.items[1]
     if not isinstance(name_node, Group) or name_node.head != "domain" or len(name_node.items) != 2:
         raise DomainError("This is no PDDL domain: (domain NAME) is missing.", path, name_node.line)
@@ -68,7 +72,11 @@ def parse_domain(text: str, path: Path | None = None) -> Domain:
     constants: dict[str, str] = {}
     for section in root.items[2:]:
         if not isinstance(section, Group):
-            raise DomainError(f"A section in parentheses was expected, but {section.text!r} found.", path, section.line)
+            raise DomainError(
+                f"A section in parentheses was expected, but {section.text!r} found.",
+                path,
+                section.line,
+            )
         if section.head == ":types":
             parents.update(_types(section))
         elif section.head == ":constants":
@@ -79,10 +87,16 @@ def parse_domain(text: str, path: Path | None = None) -> Domain:
         elif section.head == ":action":
             operator = _operator(section, comments)
             if operator.name in operators:
-                raise DomainError(f"The operator {operator.name} is defined twice.", path, section.line)
+                raise DomainError(
+                    f"The operator {operator.name} is defined twice.", path, section.line
+                )
             operators[operator.name] = operator
         elif section.head == ":derived":
-            raise DomainError("Derived predicates are not supported; make it an operator's effect.", path, section.line)
+            raise DomainError(
+                "Derived predicates are not supported; make it an operator's effect.",
+                path,
+                section.line,
+            )
     domain = Domain(
         name=_word(name_node.items[1]),
         parents=parents,
@@ -125,7 +139,9 @@ def _predicates(section: Group, comments: dict[int, tuple[str, str]]) -> list[Pr
     found = []
     for node in section.items[1:]:
         if not isinstance(node, Group) or not node.head:
-            raise FormatError("A predicate such as (at ?o - object ?s - surface) was expected.", line=node.line)
+            raise FormatError(
+                "A predicate such as (at ?o - object ?s - surface) was expected.", line=node.line
+            )
         hint, internal = _hint(node.line, comments)
         found.append(Predicate(node.head, _list(node), hint, internal))
     return found
@@ -148,7 +164,10 @@ def _hint(line: int, comments: dict[int, tuple[str, str]]) -> tuple[str, bool]:
 
 def _operator(section: Group, comments: dict[int, tuple[str, str]]) -> Operator:
     if len(section.items) < 2 or len(section.items) % 2:
-        raise FormatError("An operator is (:action NAME :parameters ... :precondition ... :effect ...).", line=section.line)
+        raise FormatError(
+            "An operator is (:action NAME :parameters ... :precondition ... :effect ...).",
+            line=section.line,
+        )
     name = _word(section.items[1])
     fields = {_word(k): v for k, v in zip(section.items[2::2], section.items[3::2], strict=True)}
     parameters: tuple[Variable, ...] = ()
@@ -189,7 +208,9 @@ def _word(node: Node) -> str:
     return node.text
 
 
-def _mutexes(comments: dict[int, tuple[str, str]], predicates: dict[str, Predicate]) -> tuple[MutexGroup, ...]:
+def _mutexes(
+    comments: dict[int, tuple[str, str]], predicates: dict[str, Predicate]
+) -> tuple[MutexGroup, ...]:
     groups = []
     for line, (kind, text) in comments.items():
         if kind != "MUTEX":
@@ -197,20 +218,26 @@ def _mutexes(comments: dict[int, tuple[str, str]], predicates: dict[str, Predica
         patterns = tuple(formula_of(node) for node in read_all(text, line))
         for pattern in patterns:
             if not isinstance(pattern, Literal) or not pattern.positive:
-                raise FormatError("A MUTEX comment lists atoms such as (acknowledged ?m).", line=line)
+                raise FormatError(
+                    "A MUTEX comment lists atoms such as (acknowledged ?m).", line=line
+                )
             _check_predicate(pattern, predicates, line)
         groups.append(MutexGroup(tuple(p for p in patterns if isinstance(p, Literal))))
     return tuple(groups)
 
 
 def _exogenous(
-    comments: dict[int, tuple[str, str]], predicates: dict[str, Predicate], operators: dict[str, Operator]
+    comments: dict[int, tuple[str, str]],
+    predicates: dict[str, Predicate],
+    operators: dict[str, Operator],
 ) -> frozenset[str]:
     found = set()
     for line, (kind, text) in comments.items():
         for name in text.lower().split() if kind == "EXOGENOUS" else ():
             if name not in predicates:
-                raise FormatError(f"There is no predicate {name}.{did_you_mean(name, predicates)}", line=line)
+                raise FormatError(
+                    f"There is no predicate {name}.{did_you_mean(name, predicates)}", line=line
+                )
             found.add(name)
     if found:
         return frozenset(found)
@@ -220,7 +247,9 @@ def _exogenous(
 
 def _check(domain: Domain, root: Group) -> None:
     if not domain.predicates:
-        raise DomainError("The domain has no :predicates, so there is nothing to aim for.", domain.path, root.line)
+        raise DomainError(
+            "The domain has no :predicates, so there is nothing to aim for.", domain.path, root.line
+        )
     for section in root.items[2:]:
         if isinstance(section, Group) and section.head == ":action":
             for node in section.items[2:]:
@@ -231,7 +260,9 @@ def _check(domain: Domain, root: Group) -> None:
             for kind in parameter.types:
                 if kind not in known:
                     hint = did_you_mean(kind, known)
-                    raise DomainError(f"{thing.name} uses the undeclared type {kind}.{hint}", domain.path)
+                    raise DomainError(
+                        f"{thing.name} uses the undeclared type {kind}.{hint}", domain.path
+                    )
 
 
 _CONNECTIVES = {"and", "or", "not", "imply", "when", "forall", "exists", "=", "either", ""}
@@ -255,4 +286,7 @@ def _check_predicate(atom: Literal, predicates: dict[str, Predicate], line: int)
         hint = did_you_mean(atom.predicate, predicates)
         raise FormatError(f"There is no predicate {atom.predicate}.{hint}", line=line)
     if len(predicate.parameters) != len(atom.args):
-        raise FormatError(f"{predicate} takes {len(predicate.parameters)} terms, but {atom} has {len(atom.args)}.", line=line)
+        raise FormatError(
+            f"{predicate} takes {len(predicate.parameters)} terms, but {atom} has {len(atom.args)}.",
+            line=line,
+        )

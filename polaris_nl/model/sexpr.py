@@ -71,7 +71,9 @@ def read_one(text: str, first_line: int = 1) -> Node:
     nodes = read_all(text, first_line)
     if len(nodes) != 1:
         found = "nothing" if not nodes else f"{len(nodes)} expressions"
-        raise FormatError(f"One expression in parentheses was expected, {found} found.", line=first_line)
+        raise FormatError(
+            f"One expression in parentheses was expected, {found} found.", line=first_line
+        )
     return nodes[0]
 
 

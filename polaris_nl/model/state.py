@@ -38,8 +38,8 @@ class Mutexes:
 
     Attributes:
         groups: what excludes what.
-        defaults: atoms that hold exactly where no other atom of their group does, such as `(hand-empty)`: taking an
-            object from the hand leaves the hand empty.
+        defaults: atoms that hold exactly where no other atom of their group does, such as
+            `(hand-empty)`: taking an object from the hand leaves the hand empty.
     """
 
     groups: tuple[MutexGroup, ...] = ()
@@ -82,11 +82,12 @@ class State:
         return State((self.facts - frozenset(removed)) | frozenset(added))
 
     def after_event(self, literals: Iterable[Literal], mutexes: Mutexes) -> State:
-        """The state after somebody has made literals true, each new fact displacing what it excludes.
+        """The state after somebody has made literals true, each new fact displacing what it
+        excludes.
 
         This is how a conditional is made true (DESIGN section 5 point 2): negative literals are
-        removed, positive ones are added, what they exclude goes, and a group that is left with none of its
-        members gets its default back (the hand is empty again).
+        removed, positive ones are added, what they exclude goes, and a group that is left with none
+        of its members gets its default back (the hand is empty again).
         """
         literals = tuple(literals)
         state = self.change((x.atom for x in literals if not x.positive), ())

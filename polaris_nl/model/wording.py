@@ -1,7 +1,8 @@
-"""How entities, facts and actions are put into words: the protocol, and plain wording without a grammar.
+"""How entities, facts and actions are put into words: the protocol, and plain wording without a
+grammar.
 
-Planning and rendering say things without knowing the language: they are handed a `Wording`. The language side
-makes one from a domain's grammar file; `PlainWording` serves domains that have none.
+Planning and rendering say things without knowing the language: they are handed a `Wording`. The
+language side makes one from a domain's grammar file; `PlainWording` serves domains that have none.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ class Wording(Protocol):
         ...
 
     def event(self, literal: Literal) -> str:
-        """A clause that fits after "once": "the resident acknowledges lunch", "the cup is on the drying rack"."""
+        """A clause for after "once": "she acknowledges lunch", "the cup is on the rack"."""
         ...
 
     def action(self, action: Action) -> str:
@@ -75,7 +76,9 @@ class PlainWording:
         words = [self.entity(a) for a in args]
         if not hint:
             return " ".join([name.replace("-", " ").replace("_", " "), *words])
-        return re.sub(r"\[(\d+)\]", lambda m: words[int(m[1])] if int(m[1]) < len(words) else m[0], hint)
+        return re.sub(
+            r"\[(\d+)\]", lambda m: words[int(m[1])] if int(m[1]) < len(words) else m[0], hint
+        )
 
 
 def listed(texts: Sequence[str], word: str = "and") -> str:

@@ -113,7 +113,10 @@ class World:
         shared = Counter(s for e in self.entities.values() for s in set(e.synonyms))
         found: dict[str, set[str]] = {}
         for entity in self.entities.values():
-            names = {*entity.kinds, *(s.replace(" ", "-") for s in entity.synonyms if shared[s] > 1)}
+            names = {
+                *entity.kinds,
+                *(s.replace(" ", "-") for s in entity.synonyms if shared[s] > 1),
+            }
             for kind in names:
                 found.setdefault(kind, set()).add(entity.name)
         return {kind: frozenset(members) for kind, members in found.items()}

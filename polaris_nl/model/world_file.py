@@ -48,7 +48,9 @@ def read_world(path: Path) -> World:
         fields = root.mapping("A world", _FIELDS)
         check_schema(fields["schema"].text("schema") if "schema" in fields else "", SCHEMA, "world")
         if "domain" not in fields:
-            raise FormatError("The world names no domain; add one, such as domain: caregiving.", line=1)
+            raise FormatError(
+                "The world names no domain; add one, such as domain: caregiving.", line=1
+            )
         domain = read_domain(domain_path(fields["domain"].text("domain"), path.parent))
         return _world(fields, domain, text, path)
     except FormatError as error:
@@ -60,7 +62,9 @@ def read_world(path: Path) -> World:
 def _world(fields: dict[str, Lined], domain: Domain, text: str, path: Path) -> World:
     entities = _entities(fields.get("entities", Lined(None, 1)), domain)
     types = {**domain.constants, **{e.name: e.type for e in entities.values()}}
-    facts = [_fact(item, domain, types) for item in fields.get("facts", Lined(None, 1)).items("facts")]
+    facts = [
+        _fact(item, domain, types) for item in fields.get("facts", Lined(None, 1)).items("facts")
+    ]
     map_path = None
     if "map" in fields:
         map_path = path.parent / fields["map"].text("map")
@@ -71,7 +75,9 @@ def _world(fields: dict[str, Lined], domain: Domain, text: str, path: Path) -> W
         domain=domain,
         entities=entities,
         facts=frozenset(facts),
-        scenario=_scenario(fields["scenario"], domain, types) if "scenario" in fields else Scenario(),
+        scenario=_scenario(fields["scenario"], domain, types)
+        if "scenario" in fields
+        else Scenario(),
         map=map_path,
         source=text,
         path=path,
@@ -85,7 +91,10 @@ def _entities(root: Lined, domain: Domain) -> dict[str, Entity]:
         entity = _entity(item, domain)
         if entity.name in lines:
             first = lines[entity.name]
-            raise FormatError(f"There is another {entity.name} on line {first}; give one of them a new name.", line=item.line)
+            raise FormatError(
+                f"There is another {entity.name} on line {first}; give one of them a new name.",
+                line=item.line,
+            )
         lines[entity.name] = item.line
         found[entity.name] = entity
     for name, line in lines.items():
@@ -95,7 +104,10 @@ def _entities(root: Lined, domain: Domain) -> dict[str, Entity]:
             raise FormatError(f"{name}'s owner {owner} is not in this world.{hint}", line=line)
     users = [name for name in lines if found[name].user]
     if len(users) > 1:
-        raise FormatError(f"{users[0]} and {users[1]} are both marked as user; one person speaks.", line=lines[users[1]])
+        raise FormatError(
+            f"{users[0]} and {users[1]} are both marked as user; one person speaks.",
+            line=lines[users[1]],
+        )
     return found
 
 
@@ -103,19 +115,29 @@ def _entity(item: Lined, domain: Domain) -> Entity:
     fields = item.mapping("An entity", _ENTITY_FIELDS)
     for wanted in ("name", "type"):
         if wanted not in fields:
-            raise FormatError(f"This entity has no {wanted}; every entity needs a name and a type.", line=item.line)
+            raise FormatError(
+                f"This entity has no {wanted}; every entity needs a name and a type.",
+                line=item.line,
+            )
     name, kind = fields["name"].text("name"), fields["type"].text("type")
     if not _NAME.match(name):
-        raise FormatError(f"{name!r} is no entity name: use lower case letters, digits and hyphens.", line=fields["name"].line)
+        raise FormatError(
+            f"{name!r} is no entity name: use lower case letters, digits and hyphens.",
+            line=fields["name"].line,
+        )
     if kind not in domain.types and kind != "object":
         hint = did_you_mean(kind, domain.types)
-        raise FormatError(f"The domain {domain.name} has no type {kind}.{hint}", line=fields["type"].line)
+        raise FormatError(
+            f"The domain {domain.name} has no type {kind}.{hint}", line=fields["type"].line
+        )
     gender = fields["gender"].text("gender") if "gender" in fields else ""
     if gender not in _GENDERS:
         raise FormatError(f"gender is female or male, not {gender!r}.", line=fields["gender"].line)
 
     def words(field: str) -> tuple[str, ...]:
-        return tuple(w.lower().strip() for w in fields[field].texts(field)) if field in fields else ()
+        return (
+            tuple(w.lower().strip() for w in fields[field].texts(field)) if field in fields else ()
+        )
 
     return Entity(
         name=name,
@@ -198,11 +220,15 @@ def _scenario(root: Lined, domain: Domain, types: dict[str, str]) -> Scenario:
     return Scenario(tuple(objectives), tuple(actions))
 
 
-def _literals(value: Lined, what: str, domain: Domain, types: dict[str, str]) -> tuple[Literal, ...]:
+def _literals(
+    value: Lined, what: str, domain: Domain, types: dict[str, str]
+) -> tuple[Literal, ...]:
     found = []
     for item in value.items(what):
         formula = _formula(item, domain, types)
         if not isinstance(formula, Literal):
-            raise FormatError(f"{formula} is not a single fact such as (at tray table).", line=item.line)
+            raise FormatError(
+                f"{formula} is not a single fact such as (at tray table).", line=item.line
+            )
         found.append(formula)
     return tuple(found)

@@ -46,7 +46,9 @@ class Lined:
         if self.value is None:
             return []
         if not isinstance(self.value, list):
-            raise FormatError(f"{what} is a list ([a, b] or lines that start with a dash).", line=self.line)
+            raise FormatError(
+                f"{what} is a list ([a, b] or lines that start with a dash).", line=self.line
+            )
         return self.value
 
     def text(self, what: str) -> str:
@@ -109,13 +111,17 @@ def parse_yaml(text: str) -> Lined:
     try:
         for event in yaml.parse(text, Loader=yaml.CSafeLoader):
             if isinstance(event, yaml.AliasEvent):
-                raise FormatError("YAML aliases (*name) are refused; write it out.", line=_line(event))
+                raise FormatError(
+                    "YAML aliases (*name) are refused; write it out.", line=_line(event)
+                )
         node = yaml.compose(text, Loader=yaml.CSafeLoader)
         return _lined(node)
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         problem = getattr(error, "problem", None) or "it can't be read as YAML"
-        raise FormatError(f"This is no YAML: {problem}.", line=mark.line + 1 if mark else 1) from error
+        raise FormatError(
+            f"This is no YAML: {problem}.", line=mark.line + 1 if mark else 1
+        ) from error
     except RecursionError as error:
         raise FormatError("The YAML is nested too deeply.", line=1) from error
 

@@ -15,7 +15,9 @@ from polaris_nl.model.formula import Literal
 from polaris_nl.model.state import State
 
 Status = OneOf["ok", "partial", "underspecified", "invalid", "undecided"]
-Cause = OneOf["conflict", "unreachable", "invalid", "undecided", "inside", "underspecified", "structure"]
+Cause = OneOf[
+    "conflict", "unreachable", "invalid", "undecided", "inside", "underspecified", "structure"
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,10 +26,12 @@ class PlanNode:
 
     Attributes:
         id: `a0` for the root, counted from there.
-        action: what the robot does to get here; None for the root and for a checkpoint that costs nothing.
+        action: what the robot does to get here; None for the root and for a checkpoint that costs
+            nothing.
         checkpoint: the checkpoint that is reached here (the inverse of the paper's f_m), or None.
         state: the world after the action, the paper's L_a.
-        removed, added: how the state differs from the node before (the conditional's facts included).
+        removed, added: how the state differs from the node before (the conditional's facts
+            included).
         children: what can come next, with the transition and its conditional where a branch begins.
     """
 
@@ -125,7 +129,13 @@ class BranchingPlan:
     @property
     def omitted(self) -> tuple[str, ...]:
         """The checkpoints that have no plan because of a problem at or above them."""
-        return tuple(dict.fromkeys(p.checkpoint for p in self.problems if p.checkpoint and p.checkpoint not in self.segments))
+        return tuple(
+            dict.fromkeys(
+                p.checkpoint
+                for p in self.problems
+                if p.checkpoint and p.checkpoint not in self.segments
+            )
+        )
 
     @property
     def action_count(self) -> int:

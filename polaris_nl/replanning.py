@@ -1,0 +1,80 @@
+"""Plans the newest revision of a program in a thread of its own; newer revisions cancel older work."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+
+from polaris_nl.automaton.automaton import Automaton
+from polaris_nl.model.errors import PolarisError
+from polaris_nl.planning.result import BranchingPlan
+
+Compile = Callable[[Automaton, Callable[[], bool]], BranchingPlan]
+"""Plans an automaton; the second argument says when the work has become stale."""
+
+Publish = Callable[[int, BranchingPlan | None, str], None]
+"""Is given revision, plan and failure: the plan is None and the failure a sentence where planning failed."""
+
+
+class Replanner:
+    """One planning thread.
+
+    Args:
+        compile: makes the plan; called in the thread, one call at a time.
+        publish: is given the result; called in the thread, never for a revision that has become
+            stale.
+    """
+
+    def __init__(self, compile: Compile, publish: Publish) -> None:
+        self._compile = compile
+        self._publish = publish
+        self._changed = threading.Condition()
+        self._wanted: tuple[int, Automaton] | None = None
+        self._newest = -1
+        self._closed = False
+        self._thread: threading.Thread | None = None
+
+    def request(self, revision: int, automaton: Automaton) -> None:
+        """Asks for the plan of a revision; whatever is being planned for an older one is stale now."""
+        with self._changed:
+            if self._closed or revision <= self._newest:
+                return
+            self._newest = revision
+            self._wanted = (revision, automaton)
+            if self._thread is None:
+                self._thread = threading.Thread(target=self._work, name="planning", daemon=True)
+                self._thread.start()
+            self._changed.notify()
+
+    def close(self) -> None:
+        """Cancels what is being planned and ends the thread."""
+        with self._changed:
+            self._closed = True
+            self._changed.notify()
+        if self._thread is not None:
+            self._thread.join()
+
+    def _work(self) -> None:
+        while True:
+            with self._changed:
+                self._changed.wait_for(lambda: self._closed or self._wanted is not None)
+                if self._closed or self._wanted is None:
+                    return
+                revision, automaton = self._wanted
+                self._wanted = None
+            plan, failure = self._try(revision, automaton)
+            if not self._stale(revision):
+                self._publish(revision, plan, failure)
+
+    def _stale(self, revision: int) -> bool:
+        return self._closed or revision != self._newest
+
+    def _try(self, revision: int, automaton: Automaton) -> tuple[BranchingPlan | None, str]:
+        try:
+            return self._compile(automaton, lambda: self._stale(revision)), ""
+        except PolarisError as error:
+            return None, str(error)
+        except Exception as error:
+            # A fault in planning must neither end the session nor leave its faces waiting for ever.
+            kind = type(error).__name__
+            return None, f"Planning failed ({kind}: {error}); undo, or say it another way."

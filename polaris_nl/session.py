@@ -1,0 +1,395 @@
+"""The composition root: an utterance or an edit comes in, a new snapshot of program and plan goes
+out.
+
+The command line and the terminal application are two faces of one `Session`. The program changes in
+the caller's thread, at once; planning happens in one thread of the session's own, newest revision
+first, and what a newer revision makes stale is cancelled. Everything that happens is reported to
+`sink` as an event, for the log.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from polaris_nl.answers import answer_query, change_in_words, run_in_words
+from polaris_nl.automaton.automaton import Automaton
+from polaris_nl.automaton.edit_json import edit_json
+from polaris_nl.automaton.edits import Edit, ReplaceProgram
+from polaris_nl.automaton.history import History
+from polaris_nl.automaton.program import Program, program_json, read_program, write_program
+from polaris_nl.execution.events import Edited, Event, Failed, Planned, Understood
+from polaris_nl.language.interpretation import Command, Interpretation, Query, Refusal
+from polaris_nl.model.errors import FileError, PolarisError
+from polaris_nl.model.wording import Wording
+from polaris_nl.model.world import World
+from polaris_nl.planning.result import BranchingPlan
+from polaris_nl.replanning import Replanner
+from polaris_nl.snapshot import Answer, Planning, Snapshot, answer_json
+
+if TYPE_CHECKING:
+    from polaris_nl.language.understanding import Dialogue, Understanding
+    from polaris_nl.planning.planner import Planner
+
+PLAN_WAIT_S = 10.0
+"""How long an answer waits for its plan before it says that planning goes on."""
+
+Subscriber = Callable[[Snapshot], None]
+
+
+class Session:
+    """One user's work on one program in one world.
+
+    Args:
+        world: the world, with its domain.
+        automaton: the program to start from.
+        path: the program file that every change is saved to, or None.
+        sink: is given every event.
+        now: the time in seconds since the epoch.
+    """
+
+    def __init__(
+        self,
+        world: World,
+        automaton: Automaton | None = None,
+        path: Path | None = None,
+        sink: Callable[[Event], None] | None = None,
+        now: Callable[[], float] = time.time,
+    ) -> None:
+        self.world = world
+        self.path = path
+        self._sink = sink or (lambda event: None)
+        self._now = now
+        self._history = History(automaton or Automaton())
+        self._dialogue: Dialogue | None = None
+        self._run_echoed = False
+        self._last_say = ""
+        self._snapshot = Snapshot(automaton=self._history.present)
+        self._subscribers: list[Subscriber] = []
+        self._changed = threading.Condition()
+        self._replanner = Replanner(
+            lambda automaton, stale: self.planner.compile(automaton, stale), self._publish_plan
+        )
+
+    # The parts, each made when it is first needed: they take a second to load.
+
+    @cached_property
+    def understanding(self) -> Understanding:
+        """The language side."""
+        from polaris_nl.language.understanding import Understanding
+
+        return Understanding(self.world)
+
+    @cached_property
+    def planner(self) -> Planner:
+        """The planning side."""
+        from polaris_nl.planning.planner import Planner
+
+        return Planner(self.world, self.wording)
+
+    @property
+    def wording(self) -> Wording:
+        """How this world's things are put into words."""
+        return self.understanding.wording
+
+    @property
+    def snapshot(self) -> Snapshot:
+        """Program and plan now."""
+        return self._snapshot
+
+    @property
+    def program(self) -> Program:
+        """The program now, with the names of its domain and world."""
+        return self.program_of(self._snapshot.automaton)
+
+    def program_of(self, automaton: Automaton) -> Program:
+        """An automaton as a program of this world."""
+        return Program(automaton, self.world.domain.name, self.world.name)
+
+    def subscribe(self, subscriber: Subscriber) -> Callable[[], None]:
+        """Calls back with every new snapshot, from whichever thread made it.
+
+        Returns:
+            A function that ends the subscription.
+        """
+        self._subscribers.append(subscriber)
+        return lambda: self._subscribers.remove(subscriber)
+
+    def say(self, utterance: str, wait_s: float = PLAN_WAIT_S) -> Answer:
+        """Interprets an utterance, carries it out, and answers.
+
+        Args:
+            utterance: what the user said or typed.
+            wait_s: how long to wait for the plan, in seconds; 0 answers with the plan pending.
+        """
+        started = time.perf_counter()
+        interpretation, dialogue = self._interpret(utterance)
+        self._dialogue = dialogue
+        failure, confirmed = "", False
+        was_echoed, self._run_echoed = self._run_echoed, False
+        before = self._snapshot
+        if interpretation.edits:
+            failure = self._do(interpretation.edits, interpretation.say)
+        if interpretation.command is not None:
+            interpretation, failure = self._carry_out(interpretation)
+            confirmed = was_echoed and interpretation.command == "yes"
+        snapshot = self.wait(wait_s) if self._needs_plan(interpretation) else self._snapshot
+        text = self._words(interpretation, before, snapshot, was_echoed)
+        if interpretation.command != "repeat":
+            self._last_say = text
+        ms = (time.perf_counter() - started) * 1000
+        answer = Answer(interpretation, text, snapshot, confirmed, failure, ms)
+        self._report_understood(answer)
+        return answer
+
+    def edit(self, edits: Iterable[Edit], label: str) -> str:
+        """Changes the program as one step that can be undone.
+
+        Returns:
+            Why the change could not be saved, or "".
+
+        Raises:
+            EditError: an edit doesn't fit; nothing has changed.
+        """
+        return self._do(tuple(edits), label)
+
+    def undo(self) -> str | None:
+        """Takes the last step back and returns its label, or None where there is nothing to undo."""
+        return self._step(self._history.undo())
+
+    def redo(self) -> str | None:
+        """Makes the last undone step again and returns its label, or None where there is nothing to redo."""
+        return self._step(self._history.redo())
+
+    def wait(self, seconds: float = PLAN_WAIT_S) -> Snapshot:
+        """Waits until the present revision is planned, or for some seconds; returns the snapshot then."""
+        self._replanner.request(self._snapshot.revision, self._snapshot.automaton)
+        with self._changed:
+            self._changed.wait_for(lambda: self._snapshot.planning != "planning", seconds)
+            return self._snapshot
+
+    def warm_up(self) -> None:
+        """Loads language and planner, so that the first sentence is answered as quickly as the second."""
+        self.understanding.interpret("help", self._snapshot.automaton)
+        self._replanner.request(self._snapshot.revision, self._snapshot.automaton)
+
+    def close(self) -> None:
+        """Ends the planning thread and the planner's child processes."""
+        self._replanner.close()
+        if "planner" in self.__dict__:
+            self.planner.close()
+
+    def __enter__(self) -> Session:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    # Utterances
+
+    def _interpret(self, utterance: str) -> tuple[Interpretation, Dialogue]:
+        if self._dialogue is None:
+            return self.understanding.interpret(utterance, self._snapshot.automaton)
+        return self.understanding.interpret(utterance, self._snapshot.automaton, self._dialogue)
+
+    def _carry_out(self, interpretation: Interpretation) -> tuple[Interpretation, str]:
+        """Does what a command asks of the session; what it asks of the face is left to the face."""
+        match interpretation.command:
+            case "undo" | "redo" as command:
+                label = self.undo() if command == "undo" else self.redo()
+                done = "Undone" if command == "undo" else "Done again"
+                said = f"There is nothing to {command}." if label is None else f"{done}: {label}"
+                return replace(interpretation, say=said), ""
+            case "new":
+                if len(self._snapshot.automaton.checkpoints) == 1:
+                    return replace(interpretation, say="The program is empty already."), ""
+                failure = self._do((ReplaceProgram(Automaton()),), "start over")
+                return replace(
+                    interpretation, say='The program is empty now. "Undo" brings it back.'
+                ), failure
+            case "save" | "load" as command:
+                return self._file_command(interpretation, command)
+            case "run":
+                self._run_echoed = True
+        return interpretation, ""
+
+    def _file_command(
+        self, interpretation: Interpretation, command: Command
+    ) -> tuple[Interpretation, str]:
+        if self.path is None:
+            reason = f"There is no program file to {command}: start with --program FILE."
+            return _refused(interpretation, reason), ""
+        try:
+            if command == "save":
+                write_program(self.program, self.path)
+                return replace(interpretation, say=f"Saved to {self.path.name}."), ""
+            loaded = read_program(self.path)
+        except PolarisError as error:
+            return _refused(interpretation, str(error)), ""
+        self._do((ReplaceProgram(loaded.automaton),), f"load {self.path.name}", save=False)
+        return replace(interpretation, say=f"Loaded from {self.path.name}."), ""
+
+    def _needs_plan(self, interpretation: Interpretation) -> bool:
+        changing = interpretation.command in (
+            "undo",
+            "redo",
+            "new",
+            "load",
+            "run",
+            "read-program",
+            "read-plan",
+            "status",
+        )
+        return bool(interpretation.edits) or changing or interpretation.query is not None
+
+    def _words(
+        self, interpretation: Interpretation, before: Snapshot, after: Snapshot, was_echoed: bool
+    ) -> str:
+        if interpretation.query is not None:
+            if interpretation.say:
+                return interpretation.say
+            back = self.understanding.read_back(after.automaton)
+            return answer_query(
+                interpretation.query, after.automaton, after.plan, self.world, self.wording, back
+            )
+        match interpretation.command:
+            case "run":
+                if after.plan is None or not after.plan.segments:
+                    self._run_echoed = False
+                back = self.understanding.read_back(after.automaton)
+                return run_in_words(after.automaton, after.plan, back)
+            case "read-program":
+                return self.understanding.read_back(after.automaton)
+            case "read-plan" | "status":
+                query = Query("plan" if interpretation.command == "read-plan" else "status")
+                back = self.understanding.read_back(after.automaton)
+                return answer_query(
+                    query, after.automaton, after.plan, self.world, self.wording, back
+                )
+            case "yes" if was_echoed:
+                return "Starting."
+            case "no" if was_echoed:
+                return "All right, I won't start."
+            case "repeat":
+                return self._last_say or "I haven't said anything yet."
+        if after.revision != before.revision:
+            pending = after.planning == "planning"
+            return change_in_words(
+                interpretation.say, before.plan, after.plan, pending, after.failure
+            )
+        return interpretation.say
+
+    # Changes
+
+    def _do(self, edits: tuple[Edit, ...], label: str, save: bool = True) -> str:
+        self._history = self._history.do(edits, label)
+        self._publish_program(label, edits)
+        return self._save() if save else ""
+
+    def _step(self, history: History | None) -> str | None:
+        if history is None:
+            return None
+        undone = len(history.past) < len(self._history.past)
+        label = self._history.past[-1].label if undone else history.past[-1].label
+        self._history = history
+        self._publish_program(f"{'undo' if undone else 'redo'}: {label}", ())
+        self._save()
+        return label
+
+    def _save(self) -> str:
+        if self.path is None:
+            return ""
+        try:
+            write_program(self.program, self.path)
+        except FileError as error:
+            self._sink(Failed(time=self._now(), text=str(error), what="save"))
+            return str(error)
+        return ""
+
+    def _publish_program(self, label: str, edits: tuple[Edit, ...]) -> None:
+        with self._changed:
+            self._set(
+                revision=self._snapshot.revision + 1,
+                automaton=self._history.present,
+                planning="planning",
+                failure="",
+                undoable=tuple(step.label for step in self._history.past),
+                redoable=tuple(step.label for step, _ in self._history.future),
+            )
+            snapshot = self._snapshot
+        self._sink(
+            Edited(
+                time=self._now(),
+                text=label,
+                revision=snapshot.revision,
+                label=label,
+                edits=[edit_json(e) for e in edits],
+                program=program_json(self.program),
+            )
+        )
+        self._tell(snapshot)
+        self._replanner.request(snapshot.revision, snapshot.automaton)
+
+    def _set(self, **changes: Any) -> None:
+        self._snapshot = replace(self._snapshot, **changes)
+        self._changed.notify_all()
+
+    def _tell(self, snapshot: Snapshot) -> None:
+        for subscriber in tuple(self._subscribers):
+            subscriber(snapshot)
+
+    # Plans, in the planning thread
+
+    def _publish_plan(self, revision: int, plan: BranchingPlan | None, failure: str) -> None:
+        with self._changed:
+            if revision != self._snapshot.revision:
+                return
+            state: Planning = "failed" if plan is None else "planned"
+            self._set(plan=plan, planning=state, failure=failure)
+            snapshot = self._snapshot
+        self._report_planned(snapshot)
+        self._tell(snapshot)
+
+    # Events
+
+    def _report_planned(self, snapshot: Snapshot) -> None:
+        if snapshot.plan is None:
+            self._sink(Failed(time=self._now(), text=snapshot.failure, what="planning"))
+            return
+        from polaris_nl.planning.plan_json import plan_json
+
+        plan = snapshot.plan
+        self._sink(
+            Planned(
+                time=self._now(),
+                revision=snapshot.revision,
+                status=plan.status,
+                plan=plan_json(plan, snapshot.automaton),
+                ms=plan.ms,
+            )
+        )
+
+    def _report_understood(self, answer: Answer) -> None:
+        value = answer_json(answer, self.program_of(answer.snapshot.automaton))
+        value.pop("program")
+        self._sink(
+            Understood(
+                time=self._now(),
+                text=answer.say,
+                utterance=answer.interpretation.utterance,
+                outcome=answer.interpretation.outcome,
+                interpretation=value,
+                ms=answer.ms,
+            )
+        )
+
+
+def _refused(interpretation: Interpretation, reason: str) -> Interpretation:
+    return replace(
+        interpretation, outcome="refused", command=None, say=reason, refusal=Refusal(reason)
+    )
