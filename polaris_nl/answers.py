@@ -14,7 +14,8 @@ from polaris_nl.language.interpretation import Query
 from polaris_nl.model.evaluate import holds
 from polaris_nl.model.formula import Literal
 from polaris_nl.model.state import State
-from polaris_nl.model.wording import Wording, listed, sentence
+from polaris_nl.model.text import listed, sentence
+from polaris_nl.model.wording import Wording
 from polaris_nl.model.world import World
 from polaris_nl.planning.result import BranchingPlan, Segment
 

@@ -18,6 +18,7 @@ from polaris_nl.model.formula import (
     Variable,
     When,
 )
+from polaris_nl.model.text import listed, with_article
 
 Types = Mapping[str, str]
 """Entity name to type name."""
@@ -97,8 +98,8 @@ def _argument_faults(
         unknown = list(_unknown(arg, types))
         yield from unknown
         if not unknown and not domain.fits(types[arg], parameter):
-            wanted = " or ".join(parameter.types)
-            yield f"In {text}, {arg} is a {types[arg]}, but a {wanted} is needed."
+            wanted = listed([with_article(t) for t in parameter.types], "or")
+            yield f"In {text}, {arg} is {with_article(types[arg])}, but {wanted} is needed."
 
 
 def _unknown(name: str, types: Types) -> Iterator[str]:

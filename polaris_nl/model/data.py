@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 from polaris_nl.model.errors import FileError, did_you_mean
@@ -38,7 +39,7 @@ def domain_path(name: str, relative_to: Path | None = None) -> Path:
     Raises:
         FileError: there is neither.
     """
-    return _find(name, relative_to, shipped_domains(), "domain", (".pddl",))
+    return _find(name, relative_to, shipped_domains, "domain", (".pddl",))
 
 
 def world_path(name: str, relative_to: Path | None = None) -> Path:
@@ -47,22 +48,23 @@ def world_path(name: str, relative_to: Path | None = None) -> Path:
     Raises:
         FileError: there is neither.
     """
-    return _find(name, relative_to, shipped_worlds(), "world", (".yaml", ".yml"))
+    return _find(name, relative_to, shipped_worlds, "world", (".yaml", ".yml"))
 
 
 def _find(
     name: str,
     relative_to: Path | None,
-    shipped: dict[str, Path],
+    shipped: Callable[[], dict[str, Path]],
     what: str,
     suffixes: tuple[str, ...],
 ) -> Path:
-    if name in shipped:
-        return shipped[name]
     if name.endswith(suffixes) or "/" in name:
         path = (relative_to or Path()) / Path(name).expanduser()
         if path.is_file():
             return path
         raise FileError(f"There is no {what} file {path}. Check the path.")
-    hint = did_you_mean(name, shipped) or " See them with: polaris-nl " + what + "s"
-    raise FileError(f"There is no {what} called {name}.{hint}")
+    known = shipped()
+    if name not in known:
+        hint = did_you_mean(name, known) or f" See them with: polaris-nl {what}s"
+        raise FileError(f"There is no {what} called {name}.{hint}")
+    return known[name]

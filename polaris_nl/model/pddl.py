@@ -23,7 +23,7 @@ from polaris_nl.model.sexpr import Group, Node, Word, read_all
 from polaris_nl.model.state import MutexGroup
 
 MAX_BYTES = 4_000_000
-_COMMENT = re.compile(r";+\s*(NL|INTERNAL|MUTEX|EXOGENOUS)\b:?\s*(.*)", re.IGNORECASE)
+_COMMENT = re.compile(r";+\s*(?:(NL|MUTEX|EXOGENOUS):\s*(.*)|(INTERNAL)\b)", re.IGNORECASE)
 
 
 def read_domain(path: Path) -> Domain:
@@ -117,7 +117,7 @@ def _comments(text: str) -> dict[int, tuple[str, str]]:
     for number, line in enumerate(text.splitlines(), 1):
         match = _COMMENT.search(line)
         if match:
-            found[number] = (match[1].upper(), match[2].strip())
+            found[number] = ((match[1] or match[3]).upper(), (match[2] or "").strip())
     return found
 
 

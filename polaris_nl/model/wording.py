@@ -13,6 +13,8 @@ from typing import Protocol
 
 from polaris_nl.model.domain import Action
 from polaris_nl.model.formula import Formula, Literal
+from polaris_nl.model.text import listed as listed
+from polaris_nl.model.text import sentence as sentence
 from polaris_nl.model.world import World
 
 
@@ -79,19 +81,3 @@ class PlainWording:
         return re.sub(
             r"\[(\d+)\]", lambda m: words[int(m[1])] if int(m[1]) < len(words) else m[0], hint
         )
-
-
-def listed(texts: Sequence[str], word: str = "and") -> str:
-    """Texts as a list in a sentence: "a", "a and b", "a, b and c"."""
-    if len(texts) < 2:
-        return "".join(texts)
-    return f"{', '.join(texts[:-1])} {word} {texts[-1]}"
-
-
-def sentence(text: str) -> str:
-    """A clause as a sentence: first letter upper case, full stop at the end."""
-    text = text.strip()
-    if not text:
-        return text
-    end = "" if text[-1] in ".!?:" else "."
-    return f"{text[0].upper()}{text[1:]}{end}"

@@ -1,0 +1,26 @@
+"""Small helpers for sentences."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+
+def listed(texts: Sequence[str], word: str = "and") -> str:
+    """Texts as a list in a sentence: "a", "a and b", "a, b and c"."""
+    if len(texts) < 2:
+        return "".join(texts)
+    return f"{', '.join(texts[:-1])} {word} {texts[-1]}"
+
+
+def sentence(text: str) -> str:
+    """A clause as a sentence: first letter upper case, full stop at the end."""
+    text = text.strip()
+    if not text:
+        return text
+    end = "" if text[-1] in ".!?:" else "."
+    return f"{text[0].upper()}{text[1:]}{end}"
+
+
+def with_article(noun: str) -> str:
+    """A noun with "a" or "an"."""
+    return f"{'an' if noun[:1] in 'aeiou' else 'a'} {noun}"
