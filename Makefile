@@ -1,0 +1,52 @@
+# Two commands do everything: `make demo` and `make test`. `make help` lists the others.
+
+VENV := .venv
+BIN := $(VENV)/bin
+LOCK := requirements.lock
+STAMP := $(VENV)/.installed
+
+.DEFAULT_GOAL := help
+.PHONY: help demo test bench lint format lock clean models
+
+help: ## show this list
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 12
+
+demo: $(STAMP) models ## speak, plan, run and review the caregiving program, without a robot
+	@$(BIN)/polaris-nl demo
+
+test: $(STAMP) models lint ## everything that CI checks
+	$(BIN)/python -m pytest
+
+bench: $(STAMP) models ## the speed table, beside the plain way
+	@$(BIN)/python -m bench
+
+lint: $(STAMP) ## style, types and import rules
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+format: $(STAMP) ## lay the code out
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+
+models: $(STAMP) ## fetch the speech model, unless it is there
+	@$(BIN)/polaris-nl models
+
+lock: $(STAMP) ## renew the locked versions and hashes
+	$(BIN)/python -m pip install --quiet uv
+	$(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes \
+	  --no-emit-index-url --no-emit-find-links --no-header --no-annotate \
+	  --extra voice --extra tui --extra dev --output-file $(LOCK) pyproject.toml
+
+clean: ## remove what was built
+	rm -rf $(VENV) build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +
+
+# One environment serves demo, test and bench. It is made again when the lock or the project file changes.
+$(STAMP): $(LOCK) pyproject.toml scripts/find-python
+	@echo "Making the environment in $(VENV); this takes a minute or two, once."
+	@python=$$(PYTHON="$(PYTHON)" sh scripts/find-python) && "$$python" -m venv --clear $(VENV)
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes -r $(LOCK)
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
+	@touch $@

@@ -1,0 +1,52 @@
+"""The planning side's face: one planner for one world."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from polaris_nl.automaton.automaton import Automaton
+from polaris_nl.model.formula import Formula
+from polaris_nl.model.state import Mutexes, State
+from polaris_nl.model.wording import PlainWording, Wording
+from polaris_nl.model.world import World
+from polaris_nl.planning.compile import Compiler
+from polaris_nl.planning.mutexes import find_mutexes
+from polaris_nl.planning.result import BranchingPlan
+from polaris_nl.planning.segments import BUDGET_S, SegmentResult, Segments, never
+
+
+class Planner:
+    """Plans programs, and single segments for the executor, in one world.
+
+    Safe to use from several threads. It keeps no process and no file between calls.
+
+    Args:
+        world: entities, and the facts at the start.
+        wording: words for problems; plain ones where there is no grammar.
+
+    Raises:
+        PlanningError: the planner can't use the world's domain.
+    """
+
+    def __init__(self, world: World, wording: Wording | None = None) -> None:
+        self.world = world
+        self.mutexes: Mutexes = find_mutexes(world)
+        self._segments = Segments(world)
+        self._compiler = Compiler(
+            world, self.mutexes, self._segments, wording or PlainWording(world)
+        )
+
+    def compile(self, automaton: Automaton, cancelled: Callable[[], bool] = never) -> BranchingPlan:
+        """The branching plan of a program, or the reasons why parts of it are missing.
+
+        Args:
+            automaton: the program.
+            cancelled: asked now and then; True ends the work, and the result is to be thrown away.
+        """
+        return self._compiler.compile(automaton, cancelled)
+
+    def segment(
+        self, state: State, goals: Sequence[Formula], budget_s: float = BUDGET_S
+    ) -> SegmentResult:
+        """A plan from a state to goals, as the robot needs it for one goal."""
+        return self._segments.solve(state, goals, budget_s)

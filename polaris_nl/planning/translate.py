@@ -1,0 +1,121 @@
+"""Fast Downward's translator, in process: PDDL text to the search binary's input.
+
+The translator keeps its options and its printing in module globals, so one call runs at a time, and
+its `print` is silenced in its own modules instead of redirecting this process's standard output,
+which other threads use.
+"""
+
+from __future__ import annotations
+
+import importlib
+import io
+import pkgutil
+import threading
+from dataclasses import dataclass
+from types import ModuleType
+from typing import Any
+
+from polaris_nl.model.errors import PlanningError
+
+_LOCK = threading.RLock()
+_PARTS: dict[str, ModuleType] = {}
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """A translated problem.
+
+    Attributes:
+        sas: the search binary's input, or "" where the goals are out of reach even if nothing ever
+            became false (no plan exists).
+        plain: without axioms and conditional effects, so that every heuristic applies.
+    """
+
+    sas: str
+    plain: bool = True
+
+
+def translate(domain: str, problem: str) -> Task:
+    """Grounds a problem.
+
+    Raises:
+        PlanningError: the translator doesn't support something in the domain; it is named.
+    """
+    with _LOCK:
+        parts = _translator()
+        task = _parse(parts, domain, problem)
+        main = parts["main"]
+        try:
+            parts["normalize"].normalize(task)
+            sas = main.pddl_to_sas(task)
+        except (Exception, SystemExit) as error:
+            raise PlanningError(
+                f"The planner can't use this domain: {_first_line(error)}."
+            ) from error
+        if _is_unsolvable(sas):
+            return Task("")
+        out = io.StringIO()
+        sas.output(out)
+        conditional = any(condition for op in sas.operators for *_, condition in op.pre_post)
+        return Task(out.getvalue(), plain=not sas.axioms and not conditional)
+
+
+def invariants(domain: str, problem: str) -> list[list[tuple[str, tuple[int | None, ...]]]]:
+    """Fast Downward's invariants of a domain: groups of (predicate, positions).
+
+    A position is the number of the shared variable that stands there, or None for what is counted
+    over.
+    """
+    with _LOCK:
+        parts = _translator()
+        task = _parse(parts, domain, problem)
+        parts["normalize"].normalize(task)
+        found = parts["invariant_finder"].find_invariants(task, None)
+        counted = parts["invariants"].COUNTED
+        return [
+            [
+                (part.predicate, tuple(None if a == counted else a for a in part.args))
+                for part in sorted(invariant.parts)
+            ]
+            for invariant in found
+        ]
+
+
+def _translator() -> dict[str, ModuleType]:
+    if not _PARTS:
+        package = importlib.import_module("fast_downward.translate")
+        options = importlib.import_module("fast_downward.translate.options")
+        options.set_options(["domain.pddl", "problem.pddl"])
+        for module in pkgutil.walk_packages(package.__path__, "fast_downward.translate."):
+            if not module.name.endswith("__main__"):
+                loaded: Any = importlib.import_module(module.name)
+                loaded.print = _quiet
+                _PARTS[module.name.rpartition(".")[2]] = loaded
+    return _PARTS
+
+
+def _quiet(*values: object, file: Any = None, **how: Any) -> None:
+    """Stands in for `print` in the translator's modules: writes to files, and not to the screen."""
+    if file is not None:
+        print(*values, file=file, **how)
+
+
+def _parse(parts: dict[str, ModuleType], domain: str, problem: str) -> Any:
+    read = parts["lisp_parser"].parse_nested_list
+    try:
+        return parts["parsing_functions"].parse_task(
+            read(domain.splitlines(keepends=True)), read(problem.splitlines(keepends=True))
+        )
+    except (Exception, SystemExit) as error:
+        raise PlanningError(f"The planner can't read this domain: {_first_line(error)}.") from error
+
+
+def _is_unsolvable(sas: Any) -> bool:
+    """Whether the translator put its stand-in for an unsolvable task in the place of the task."""
+    names = sas.variables.value_names
+    return bool(names and names[0][:1] == ["Atom dummy(val1)"] and sas.goal.pairs == [(0, 1)])
+
+
+def _first_line(error: BaseException) -> str:
+    lines = [line for line in str(error).splitlines() if line.strip()]
+    return lines[0].strip(" .!") if lines else type(error).__name__

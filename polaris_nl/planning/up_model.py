@@ -1,0 +1,188 @@
+"""Worlds and goals as unified-planning problems, for validating plans and for comparing planners.
+
+Importing unified-planning takes about two seconds: nothing on the way from an edit to its plan
+does.
+"""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from polaris_nl.model.domain import OBJECT, Action, Domain
+from polaris_nl.model.formula import (
+    And,
+    Equal,
+    Formula,
+    Imply,
+    Literal,
+    Not,
+    Or,
+    Quantified,
+    Variable,
+    When,
+)
+from polaris_nl.model.state import State
+from polaris_nl.model.world import World
+from polaris_nl.planning.pddl_text import planner_type
+
+
+def up_problem(world: World, state: State, goals: Sequence[Formula]) -> Any:
+    """The `unified_planning.model.Problem` of making goals true from a state."""
+    return _Builder(world).problem(state, goals)
+
+
+def is_valid(
+    world: World, state: State, goals: Sequence[Formula], actions: Iterable[Action]
+) -> bool:
+    """Whether actions lead from a state to goals, by unified-planning's `SequentialPlanValidator`."""
+    from unified_planning.engines import SequentialPlanValidator, ValidationResultStatus
+
+    problem = up_problem(world, state, goals)
+    with SequentialPlanValidator() as validator:
+        result = validator.validate(problem, up_plan(problem, actions))
+    return bool(result.status == ValidationResultStatus.VALID)
+
+
+def up_plan(problem: Any, actions: Iterable[Action]) -> Any:
+    """Actions as a `SequentialPlan` of a unified-planning problem."""
+    from unified_planning.plans import ActionInstance, SequentialPlan
+
+    expressions = problem.environment.expression_manager
+    instances = []
+    for action in actions:
+        objects = [expressions.ObjectExp(problem.object(arg)) for arg in action.args]
+        instances.append(ActionInstance(problem.action(action.operator), tuple(objects)))
+    return SequentialPlan(instances, problem.environment)
+
+
+class _Builder:
+    def __init__(self, world: World) -> None:
+        import unified_planning.model as model
+        from unified_planning.shortcuts import get_environment
+
+        self._world = world
+        self._model = model
+        # The global one: parts of unified-planning's validator use no other.
+        self._environment = get_environment()
+        # In PDDL, an entity may bear the name of a predicate, such as food-station.
+        self._environment.error_used_name = False
+        self._em = self._environment.expression_manager
+        self._unions = _unions(world.domain)
+        self._objects: dict[str, Any] = {}
+        self._fluents: dict[str, Any] = {}
+
+    def problem(self, state: State, goals: Sequence[Formula]) -> Any:
+        world, model = self._world, self._model
+        problem = model.Problem(world.name, self._environment, initial_defaults={})
+        boolean = self._environment.type_manager.BoolType()
+        for predicate in world.domain.predicates.values():
+            parameters = OrderedDict((p.name, self._type(p)) for p in predicate.parameters)
+            fluent = model.Fluent(predicate.name, boolean, parameters, self._environment)
+            self._fluents[predicate.name] = problem.add_fluent(fluent, default_initial_value=False)
+        for entity in world.entities.values():
+            kind = self._named(planner_type(world.domain, entity.type))
+            self._objects[entity.name] = problem.add_object(
+                model.Object(entity.name, kind, self._environment)
+            )
+        for fact in sorted(state.facts):
+            problem.set_initial_value(self._expression(fact, {}), True)
+        for operator in world.domain.operators.values():
+            parameters = OrderedDict((p.name, self._type(p)) for p in operator.parameters)
+            action = model.InstantaneousAction(operator.name, parameters, self._environment)
+            names = {p.name: action.parameter(p.name) for p in operator.parameters}
+            bound = {k: self._em.ParameterExp(v) for k, v in names.items()}
+            action.add_precondition(self._expression(operator.precondition, bound))
+            self._effects(action, operator.effect, bound, None, ())
+            problem.add_action(action)
+        for goal in goals:
+            problem.add_goal(self._expression(goal, {}))
+        return problem
+
+    def _effects(
+        self,
+        action: Any,
+        effect: Formula,
+        bound: dict[str, Any],
+        condition: Any,
+        forall: tuple[Any, ...],
+    ) -> None:
+        if isinstance(effect, And):
+            for part in effect.parts:
+                self._effects(action, part, bound, condition, forall)
+        elif isinstance(effect, When):
+            self._effects(
+                action, effect.effect, bound, self._expression(effect.condition, bound), forall
+            )
+        elif isinstance(effect, Quantified):
+            variables = [self._variable(v) for v in effect.variables]
+            inner = {**bound, **{v.name: self._em.VariableExp(v) for v in variables}}
+            self._effects(action, effect.body, inner, condition, (*forall, *variables))
+        elif isinstance(effect, Literal):
+            fluent = self._expression(effect.atom, bound)
+            holds = True if condition is None else condition
+            action.add_effect(fluent, effect.positive, holds, forall=forall)
+
+    def _expression(self, formula: Formula, bound: dict[str, Any]) -> Any:
+        em = self._em
+        if isinstance(formula, Literal):
+            args = tuple(self._term(a, bound) for a in formula.args)
+            atom = em.FluentExp(self._fluents[formula.predicate], args)
+            return atom if formula.positive else em.Not(atom)
+        if isinstance(formula, And):
+            return em.And([self._expression(p, bound) for p in formula.parts])
+        if isinstance(formula, Or):
+            return em.Or([self._expression(p, bound) for p in formula.parts])
+        if isinstance(formula, Not):
+            return em.Not(self._expression(formula.part, bound))
+        if isinstance(formula, Imply):
+            condition = self._expression(formula.condition, bound)
+            return em.Implies(condition, self._expression(formula.conclusion, bound))
+        if isinstance(formula, Quantified):
+            variables = [self._variable(v) for v in formula.variables]
+            inner = {**bound, **{v.name: em.VariableExp(v) for v in variables}}
+            make = em.Forall if formula.quantifier == "forall" else em.Exists
+            return make(self._expression(formula.body, inner), *variables)
+        assert isinstance(formula, Equal)
+        return em.Equals(self._term(formula.left, bound), self._term(formula.right, bound))
+
+    def _term(self, name: str, bound: dict[str, Any]) -> Any:
+        return bound[name] if name in bound else self._em.ObjectExp(self._objects[name])
+
+    def _variable(self, variable: Variable) -> Any:
+        return self._model.Variable(variable.name, self._type(variable), self._environment)
+
+    def _type(self, variable: Variable) -> Any:
+        if len(variable.types) > 1:
+            return self._named(_union_name(variable.types))
+        return self._named(
+            planner_type(self._world.domain, variable.types[0] if variable.types else OBJECT)
+        )
+
+    def _named(self, name: str) -> Any:
+        """A user type below its parent; a union of types is the parent of its members."""
+        parent = self._unions.get(name)
+        if parent is None:
+            declared = self._world.domain.parents.get(name, ())
+            parent = declared[0] if declared and declared[0] != OBJECT else None
+        if parent is None and name != OBJECT:
+            parent = OBJECT
+        above = self._named(parent) if parent is not None else None
+        return self._environment.type_manager.UserType(name, above)
+
+
+def _union_name(types: Sequence[str]) -> str:
+    return "-or-".join(sorted(types))
+
+
+def _unions(domain: Domain) -> dict[str, str]:
+    """For each member of an `(either ...)`, the name of the union; unified-planning has no such types."""
+    found: dict[str, str] = {}
+    things: list[Sequence[Variable]] = [p.parameters for p in domain.predicates.values()]
+    things += [o.parameters for o in domain.operators.values()]
+    for parameters in things:
+        for parameter in parameters:
+            if len(parameter.types) > 1:
+                found.update(dict.fromkeys(parameter.types, _union_name(parameter.types)))
+    return found

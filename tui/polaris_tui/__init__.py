@@ -1,0 +1,1 @@
+"""The terminal application of Polaris NL: one more face of a session."""
