@@ -144,6 +144,21 @@ def _lined(node: Any) -> Lined:
                 raise FormatError(f"The field {key.value!r} is given twice.", line=_line(key))
             found[key.value] = Lined(_lined(value).value, _line(key))
         return Lined(found, _line(node))
-    # A loader, not `construct_object`, so that plain words such as `home` or `2` get YAML's own types.
-    value = yaml.load(yaml.serialize(node), Loader=yaml.CSafeLoader)  # noqa: S506
-    return Lined(value, _line(node))
+    return Lined(_scalar(node), _line(node))
+
+
+def _scalar(node: Any) -> Any:
+    """A plain value by the tag that YAML's rules gave it."""
+    kind = node.tag.rpartition(":")[2]
+    if kind == "null":
+        return None
+    if kind == "bool":
+        return node.value.lower() in ("true", "yes", "on")
+    try:
+        if kind == "int":
+            return int(node.value.replace("_", ""), 0)
+        if kind == "float":
+            return float(node.value.replace("_", "").replace(".nan", "nan").replace(".inf", "inf"))
+    except ValueError:
+        return node.value
+    return node.value

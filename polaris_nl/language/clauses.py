@@ -1,0 +1,154 @@
+"""Clauses: wordings of predicates with mentions that fit their signatures. A reading that doesn't fit is none."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal as OneOf
+
+from polaris_nl.language.grammar import Grammar
+from polaris_nl.language.mention import Mention
+from polaris_nl.language.template import Sequence_, Slot, first_words, match
+from polaris_nl.model.world import World
+
+Kind = OneOf["goal", "state", "wish", "ellipsis"]
+
+_KINDS: Mapping[str, tuple[Kind, bool, float]] = {
+    "goals": ("goal", True, 1.0),
+    "not-goals": ("goal", False, 1.0),
+    "asks": ("goal", True, 1.6),
+    "states": ("state", True, 1.0),
+    "not-states": ("state", False, 1.0),
+    "wished-states": ("wish", True, 1.0),
+    "wished-not-states": ("wish", False, 1.0),
+    "ellipsis": ("ellipsis", True, 1.8),
+}
+"""For each list of a grammar file: what its wordings are, their sign, and what taking one costs."""
+
+
+@dataclass(frozen=True, slots=True)
+class Clause:
+    """One predicate, said of mentions.
+
+    Attributes:
+        kind: an imperative, a state, a state that is wished for, or a rest that leans on the clause before.
+        bindings: the parameter's name (without `?`) and what was said for it.
+        cost: how much speaks against it.
+    """
+
+    start: int
+    end: int
+    kind: Kind
+    predicate: str
+    positive: bool
+    bindings: tuple[tuple[str, Mention], ...]
+    cost: float
+
+
+@dataclass(frozen=True, slots=True)
+class _Form:
+    predicate: str
+    kind: Kind
+    positive: bool
+    cost: float
+    template: Sequence_
+    types: Mapping[str, tuple[str, ...]]
+
+
+class ClauseFinder:
+    """Finds the clauses of one world's domain."""
+
+    def __init__(self, world: World, grammar: Grammar) -> None:
+        self._world = world
+        self._by_word: dict[str, list[_Form]] = {}
+        self._anywhere: list[_Form] = []
+        for form in self._forms(grammar):
+            words = first_words(form.template)
+            if words is None:
+                self._anywhere.append(form)
+            for word in words or ():
+                self._by_word.setdefault(word, []).append(form)
+
+    def _forms(self, grammar: Grammar) -> Iterator[_Form]:
+        for name, phrases in grammar.predicates.items():
+            predicate = self._world.domain.predicates.get(name)
+            if predicate is None:
+                continue
+            types = {p.name.lstrip("?"): p.types for p in predicate.parameters}
+            for key, templates in phrases.wordings.items():
+                kind, positive, cost = _KINDS[key]
+                for template in templates:
+                    yield _Form(name, kind, positive, cost, template, types)
+
+    def at(
+        self, tokens: Sequence[str], start: int, mentions: Sequence[Sequence[Mention]]
+    ) -> Iterator[Clause]:
+        """The clauses that start at a position."""
+        forms = [*self._by_word.get(tokens[start], ()), *(self._anywhere if mentions[start] else ())]
+        for form in forms:
+
+            def fillers(slot: Slot, at: int, form: _Form = form) -> Iterator[tuple[int, object]]:
+                types = (slot.type,) if slot.type else form.types.get(slot.name, ())
+                if at < len(mentions):
+                    for mention in mentions[at]:
+                        if self.fits(mention, types):
+                            yield mention.end, mention
+
+            for end, bound in match(form.template, tokens, start, fillers):
+                if end > start:
+                    yield self._clause(form, start, end, bound)
+
+    def _clause(self, form: _Form, start: int, end: int, bound: tuple[tuple[str, object], ...]) -> Clause:
+        bindings = tuple((name, m) for name, m in bound if isinstance(m, Mention))
+        cost = form.cost + sum(_mention_cost(m, form.types.get(n, ()), self) for n, m in bindings)
+        return Clause(start, end, form.kind, form.predicate, form.positive, bindings, cost)
+
+    def fits(self, mention: Mention, types: Sequence[str]) -> bool:
+        """Whether a mention can mean entities of some types."""
+        if mention.parts:
+            return all(self.fits(part, types) for part in mention.parts)
+        if mention.pronoun:
+            return not types or bool(set(pronoun_types(mention.pronoun)) & set(types))
+        domain = self._world.domain
+        entities = self._world.entities
+        return not types or any(
+            domain.is_a(entities[c.entity].type, t) for c in mention.candidates for t in types
+        ) or self._place_of_surfaces(mention, types)
+
+    def _place_of_surfaces(self, mention: Mention, types: Sequence[str]) -> bool:
+        """A region where a surface is wanted: "bring the cup to the kitchen" asks where in the kitchen."""
+        return "surface" in types and any(
+            self._world.entities[c.entity].type == "region" for c in mention.candidates
+        )
+
+
+_PRONOUN_TYPES: Mapping[str, tuple[str, ...]] = {
+    "it": ("object", "container", "message"),
+    "that": ("object", "container", "message"),
+    "this": ("object", "container", "message"),
+    "one": ("object", "surface", "container"),
+    "she": ("person",),
+    "he": ("person",),
+    "her": ("person",),
+    "him": ("person",),
+    "me": ("person",),
+    "there": ("region", "surface"),
+}
+
+
+def pronoun_types(pronoun: str) -> tuple[str, ...]:
+    """The types of what a pronoun can stand for."""
+    return _PRONOUN_TYPES.get(pronoun, ("object", "container", "person"))
+
+
+def _mention_cost(mention: Mention, types: Sequence[str], finder: ClauseFinder) -> float:
+    cost = 0.15 if mention.place is not None else 0.0
+    if mention.parts:
+        return cost + 0.02 * len(mention.parts)
+    best = min((c.rank for c in mention.candidates), default=0)
+    vague = 0.3 if mention.candidates and best == 3 else 0.0
+    place = 0.0
+    if mention.candidates and "surface" in types:
+        kinds = {finder._world.entities[c.entity].type for c in mention.candidates}
+        place = 0.4 if "surface" not in kinds else 0.0
+    return cost + vague + place

@@ -1,0 +1,41 @@
+"""What a dialogue remembers between utterances."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from polaris_nl.language.resolve import Scope
+
+
+@dataclass(frozen=True, slots=True)
+class Pending:
+    """A question that waits for its answer.
+
+    Attributes:
+        utterance: what was said, to be read again with the answer.
+        phrase: the words that were unclear, or "" where something was missing.
+        options: the answers offered, as spoken, with the entity each means.
+    """
+
+    utterance: str
+    phrase: str
+    options: tuple[tuple[str, str], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Dialogue:
+    """The state of a dialogue.
+
+    Attributes:
+        here: the checkpoint edited last, or None for "the last one there is".
+        touched: the checkpoints that the last edit made or changed, for corrections.
+        anchor: where the latest branch began, for "otherwise".
+        scope: what was talked about.
+        pending: the open question, or None.
+    """
+
+    here: str | None = None
+    touched: tuple[str, ...] = ()
+    anchor: str | None = None
+    scope: Scope = Scope()
+    pending: Pending | None = None

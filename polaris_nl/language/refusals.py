@@ -1,0 +1,78 @@
+"""Reasons for refusing, and help: what was not understood, what is near it, what can be said instead."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rapidfuzz import process
+
+from polaris_nl.language.grammar import Grammar
+from polaris_nl.language.lexicon import Lexicon
+from polaris_nl.language.segment import Cut
+from polaris_nl.language.tokens import BREAK, COMMA
+from polaris_nl.language.wording import GrammarWording
+from polaris_nl.model.formula import Literal
+from polaris_nl.model.text import listed
+from polaris_nl.model.world import World
+
+_SMALL = frozenset(
+    "the a an to of on in at and or it is are be my her his its me you i she he they them that this there with for"
+    " from do not then now please just some".split()
+)
+
+
+class Refusals:
+    """Puts refusals into words for one world."""
+
+    def __init__(self, world: World, grammar: Grammar, lexicon: Lexicon, wording: GrammarWording) -> None:
+        self._world = world
+        self._grammar = grammar
+        self._wording = wording
+        self._known = lexicon.vocabulary
+        self._spoken = [e.spoken for e in world.entities.values()]
+
+    def unknown(self, tokens: Sequence[str], skipped: Sequence[str]) -> tuple[str, ...]:
+        """The words to name: those that nothing accounted for, small words left out where others remain."""
+        content = [w for w in skipped if w not in _SMALL and w not in (BREAK, COMMA)]
+        return tuple(dict.fromkeys(content))
+
+    def reason(self, tokens: Sequence[str], unknown: Sequence[str], cuts: Sequence[Cut]) -> str:
+        """A sentence or two: what wasn't understood, what is near, what can be asked."""
+        strange = [w for w in unknown if w not in self._known]
+        if strange:
+            near = self._near(strange)
+            hint = f" Did you mean {listed([f'the {n}' for n in near], 'or')}?" if near else f" {self.examples()}"
+            words = listed([f'"{w}"' for w in strange[:4]])
+            return f"I don't understand {words}.{hint}"
+        if unknown:
+            words = " ".join(unknown[:6])
+            return f'I can\'t make a goal of "{words}" here. {self.examples()}'
+        return f"I don't see what should be achieved. {self.examples()}"
+
+    def help(self) -> str:
+        """What can be said."""
+        return (
+            f"{self.examples()} Add conditions with once, if, unless or otherwise; ask what I will do; say undo, "
+            "read it back, or run it."
+        )
+
+    def examples(self) -> str:
+        """Two or three things that can be asked of this robot, about things in this world."""
+        found = []
+        for name in ("at", "alerted-to", "open", "robot-at", "in", "has"):
+            predicate = self._world.domain.predicates.get(name)
+            if predicate is None or not self._world.domain.achievers(Literal(name)):
+                continue
+            args = [next(self._world.of_type(*p.types), None) for p in predicate.parameters]
+            if all(args):
+                literal = Literal(name, tuple(a.name for a in args if a))
+                found.append(f'"{self._wording.goal(literal)}"')
+        return f"You can say, for example, {listed(found[:3], 'or')}." if found else "Say a goal."
+
+    def _near(self, words: Sequence[str]) -> list[str]:
+        near: list[str] = []
+        for word in words:
+            found = process.extractOne(word, self._spoken, score_cutoff=75)
+            if found is not None and found[0] not in near:
+                near.append(found[0])
+        return near

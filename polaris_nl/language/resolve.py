@@ -1,0 +1,327 @@
+"""Which entities mentions mean: by type, owner, adjectives, place, what was mentioned before; else one question."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+from polaris_nl.language.clauses import Clause
+from polaris_nl.language.mention import Candidate, Mention
+from polaris_nl.model.formula import And, Formula, Imply, Literal, Quantified, Variable
+from polaris_nl.model.world import World
+
+_PLACE_PREDICATES = ("at", "in", "person-in", "located", "has")
+
+
+class Unclear(Exception):  # noqa: N818 - a question, not an error
+    """A mention that may mean several entities, or none that is known: the reading has a hole."""
+
+    def __init__(self, about: str, options: Sequence[str], phrase: str = "", slot: str = "") -> None:
+        super().__init__(about)
+        self.about = about
+        self.options = tuple(options)
+        self.phrase = phrase
+        self.slot = slot
+
+
+class Misfit(Exception):  # noqa: N818 - a reason to refuse, not an error
+    """A reading that can't be: the reason is a sentence for the user."""
+
+
+@dataclass(frozen=True, slots=True)
+class Scope:
+    """What was talked about, for pronouns and "the same".
+
+    Attributes:
+        referents: entities, the latest last.
+        group: the entities of the latest plural mention.
+        choices: what the user has answered for phrases that were asked about.
+    """
+
+    referents: tuple[str, ...] = ()
+    group: tuple[str, ...] = ()
+    choices: Mapping[str, str] = field(default_factory=dict)
+
+    def after(self, entities: Sequence[str]) -> Scope:
+        """The scope once entities were mentioned."""
+        if not entities:
+            return self
+        kept = tuple(r for r in self.referents if r not in entities)
+        group = tuple(entities) if len(entities) > 1 else self.group
+        return replace(self, referents=(*kept, *entities)[-40:], group=group)
+
+
+@dataclass(frozen=True, slots=True)
+class Meant:
+    """What a mention means: entities, or every entity of a kind."""
+
+    entities: tuple[str, ...] = ()
+    every: Quantified | None = None
+
+
+class Resolver:
+    """Resolves mentions in one world."""
+
+    def __init__(self, world: World) -> None:
+        self._world = world
+
+    def literals(self, clause: Clause, scope: Scope, condition: bool) -> tuple[tuple[Formula, ...], Scope]:
+        """The goals, or the literals of a condition, that a clause asks for.
+
+        Returns:
+            They, and the scope after the clause.
+
+        Raises:
+            Unclear: a question has to be asked.
+            Misfit: nothing that is known fits.
+        """
+        predicate = self._world.domain.predicates[clause.predicate]
+        bindings = dict(clause.bindings)
+        extra = [(n, m) for n, m in clause.bindings if f"?{n}" not in {p.name for p in predicate.parameters}]
+        for _, mention in extra:
+            scope = scope.after(self.meant(mention, ("person",), scope, condition).entities)
+        chosen: list[Meant] = []
+        for parameter in predicate.parameters:
+            mention = bindings.get(parameter.name.lstrip("?"))
+            if mention is None:
+                chosen.append(self._implied(clause, parameter, scope))
+                continue
+            meant = self.meant(mention, parameter.types, scope, condition)
+            scope = scope.after(meant.entities)
+            chosen.append(meant)
+        goals = self._combined(clause, chosen)
+        for name, mention in bindings.items():
+            parameter_types = next((p.types for p in predicate.parameters if p.name == f"?{name}"), ())
+            goals += self._said_of(mention, parameter_types, scope, condition)
+        return tuple(dict.fromkeys(goals)), scope
+
+    def _combined(self, clause: Clause, chosen: Sequence[Meant]) -> tuple[Formula, ...]:
+        every = [m for m in chosen if m.every is not None]
+        rows: list[tuple[str, ...]] = [()]
+        for meant in chosen:
+            terms = ("?x",) if meant.every is not None else meant.entities
+            rows = [(*row, term) for row in rows for term in terms]
+        literals = tuple(Literal(clause.predicate, row, clause.positive) for row in rows)
+        if not every:
+            return literals
+        quantified = every[0].every
+        assert quantified is not None
+        return tuple(
+            Quantified("forall", quantified.variables, Imply(quantified.body, literal)) for literal in literals
+        )
+
+    def _said_of(
+        self, mention: Mention, types: Sequence[str], scope: Scope, condition: bool
+    ) -> tuple[Formula, ...]:
+        """Goals in adjectives: "a full tray" is to be full, where the robot can see to it."""
+        found: list[Formula] = []
+        for part in mention.parts or (mention,):
+            for predicate, positive in part.states if not part.quantifier or part.quantifier != "all" else ():
+                if condition or not self._world.domain.achievers(Literal(predicate, (), positive)):
+                    continue
+                for entity in self.meant(part, types, scope, condition).entities:
+                    literal = Literal(predicate, (entity,), positive)
+                    # What holds already describes, and needs no goal, unless it is to stay so.
+                    if positive or not self._world.initial.holds(literal):
+                        found.append(literal)
+        return tuple(found)
+
+    def _implied(self, clause: Clause, parameter: Variable, scope: Scope) -> Meant:
+        """What isn't said: the latest that fits, or the only one there is."""
+        for name in reversed(scope.referents):
+            if self._is(name, parameter.types):
+                return Meant((name,))
+        fitting = [e.name for e in self._world.of_type(*parameter.types)]
+        if len(fitting) == 1:
+            return Meant((fitting[0],))
+        what = " or ".join(parameter.types)
+        options = [self._world.entities[n].spoken for n in fitting][:6]
+        question = {"surface": "Where to?", "container": "Into what?", "message": "About what?"}
+        raise Unclear(question.get(what, f"Which {what}?"), options, "", parameter.name)
+
+    def meant(self, mention: Mention, types: Sequence[str], scope: Scope, condition: bool = False) -> Meant:
+        """The entities that a mention means.
+
+        Raises:
+            Unclear: several fit equally well.
+            Misfit: none fits.
+        """
+        if mention.parts:
+            if mention.alternative:
+                options = [self.meant(p, types, scope, condition).entities for p in mention.parts]
+                return self._one([n for o in options for n in o], mention, scope)
+            entities = [n for p in mention.parts for n in self.meant(p, types, scope, condition).entities]
+            return Meant(tuple(dict.fromkeys(entities)))
+        if mention.pronoun and mention.pronoun != "one":
+            return self._pronoun(mention, types, scope)
+        names = self._fitting(mention, types, scope)
+        if not names:
+            raise Misfit(self._nothing_fits(mention, types))
+        if mention.quantifier == "all" and not condition:
+            return self._every(mention, types, names)
+        if mention.quantifier in ("all", "both") or (mention.plural and not mention.number):
+            if mention.quantifier == "both" and len(names) > 2:
+                raise Unclear(f"Which two do you mean by {mention.text}?", self._spoken(names), mention.text)
+            return Meant(tuple(names))
+        if mention.number and mention.number == len(names):
+            return Meant(tuple(names))
+        return self._one(names, mention, scope)
+
+    def _one(self, names: Sequence[str], mention: Mention, scope: Scope) -> Meant:
+        names = list(dict.fromkeys(names))
+        chosen = scope.choices.get(mention.text)
+        if chosen in names:
+            return Meant((chosen,))
+        if len(names) == 1:
+            return Meant((names[0],))
+        recent = [r for r in reversed(scope.referents) if r in names]
+        if recent and not mention.other and not mention.alternative:
+            return Meant((recent[0],))
+        # The user's choice wins, then what was mentioned before; else it is asked.
+        options = self._spoken(names)
+        raise Unclear(f"Which {_noun(mention)} do you mean?", options, mention.text)
+
+    def _fitting(self, mention: Mention, types: Sequence[str], scope: Scope) -> list[str]:
+        candidates = [c for c in mention.candidates if self._is(c.entity, types)]
+        if mention.pronoun == "one":
+            names = reversed(scope.referents)
+            nouns = {self._world.entities[n].noun for n in names if self._is(n, types)} - {""}
+            candidates = [Candidate(e.name, 1) for e in self._world.of_type(*types) if e.noun in nouns]
+        if not candidates and "surface" in types:
+            candidates = self._surfaces_in(mention)
+        if mention.owner:
+            candidates = self._owned(mention.owner, candidates, scope)
+        if mention.place is not None:
+            candidates = self._placed(candidates, mention.place, scope)
+        if mention.other:
+            last = next((r for r in reversed(scope.referents) if r in {c.entity for c in candidates}), None)
+            candidates = [c for c in candidates if c.entity != last]
+        candidates = self._described(candidates, mention)
+        if not candidates:
+            return []
+        if mention.quantifier or mention.plural or mention.number:
+            return [c.entity for c in candidates]
+        best = min(c.rank for c in candidates)
+        return [c.entity for c in candidates if c.rank == best]
+
+    def _owned(self, owner: str, candidates: Sequence[Candidate], scope: Scope) -> list[Candidate]:
+        owners = self._owners(owner, scope)
+        owned = [c for c in candidates if self._world.entities[c.entity].owner in owners]
+        if owned:
+            return owned
+        # "Her table" may be any table to somebody whom the world gives no table.
+        return [c for c in candidates if not self._world.entities[c.entity].owner]
+
+    def _owners(self, owner: str, scope: Scope) -> tuple[str, ...]:
+        people = list(self._world.of_type("person")) if "person" in self._world.domain.types else []
+        if owner == "user":
+            return tuple(p.name for p in people if p.user)
+        if owner not in ("female", "male", "any"):
+            return (owner,)
+        fitting = [p.name for p in people if owner == "any" or p.gender in (owner, "")]
+        recent = [r for r in reversed(scope.referents) if r in fitting]
+        if recent:
+            return (recent[0],)
+        return tuple(p.name for p in people if owner == "any" or p.gender == owner)
+
+    def _placed(self, candidates: Sequence[Candidate], place: Mention, scope: Scope) -> list[Candidate]:
+        try:
+            there = set(self.meant(place, ("surface", "container", "region", "person"), scope).entities)
+        except (Unclear, Misfit):
+            return list(candidates)
+        state = self._world.initial
+        held = [
+            c
+            for c in candidates
+            if any(
+                f.predicate in _PLACE_PREDICATES and c.entity in f.args and there & set(f.args) for f in state.facts
+            )
+            or self._world.place_of(c.entity, state) in there
+        ]
+        return held or list(candidates)
+
+    def _described(self, candidates: Sequence[Candidate], mention: Mention) -> list[Candidate]:
+        """Adjectives that describe: among several, those of which they are true now."""
+        if not mention.states or len(candidates) < 2:
+            return list(candidates)
+        state = self._world.initial
+        true = [
+            c
+            for c in candidates
+            if all(state.holds(Literal(p, (c.entity,), positive)) for p, positive in mention.states)
+        ]
+        return true or list(candidates)
+
+    def _surfaces_in(self, mention: Mention) -> list[Candidate]:
+        regions = {c.entity for c in mention.candidates if self._world.entities[c.entity].type == "region"}
+        best = min((c.rank for c in mention.candidates if c.entity in regions), default=0)
+        regions = {c.entity for c in mention.candidates if c.entity in regions and c.rank == best}
+        return [
+            Candidate(f.args[0], 1)
+            for f in sorted(self._world.facts)
+            if f.predicate == "located" and f.args[1] in regions and self._is(f.args[0], ("surface",))
+        ]
+
+    def _pronoun(self, mention: Mention, types: Sequence[str], scope: Scope) -> Meant:
+        if mention.pronoun == "me":
+            user = self._world.user
+            if user is not None:
+                return Meant((user.name,))
+            people = [p.name for p in self._world.of_type("person")]
+            return self._one(people, replace(mention, other=True), scope)
+        if mention.pronoun in _PLURAL and scope.group and all(self._is(n, types) for n in scope.group):
+            return Meant(scope.group)
+        gender = {"she": "female", "her": "female", "he": "male", "him": "male"}.get(mention.pronoun, "")
+        fitting = [
+            r
+            for r in reversed(scope.referents)
+            if self._is(r, types) and (not gender or self._world.entities[r].gender in (gender, ""))
+        ]
+        if fitting:
+            return Meant((fitting[0],))
+        known = [
+            e.name for e in self._world.of_type(*types) if not gender or e.gender == gender
+        ]
+        if gender and len(known) == 1:
+            return Meant((known[0],))
+        options = self._spoken(known) if len(known) <= 6 else []
+        who = "Who" if "person" in types else "What"
+        raise Unclear(f'{who} do you mean by "{mention.text}"?', options, mention.text)
+
+    def _every(self, mention: Mention, types: Sequence[str], names: Iterable[str]) -> Meant:
+        kind = mention.kind or (types[0] if types else "object")
+        variable = Variable("?x", (types[0] if types else "object",))
+        parts: list[Formula] = []
+        if kind != variable.types[0]:
+            parts.append(Literal("kind", ("?x", kind)))
+        parts.extend(Literal(p, ("?x",), positive) for p, positive in mention.states)
+        if mention.place is not None:
+            there = self.meant(mention.place, ("surface", "container"), Scope()).entities
+            predicate = "in" if self._is(there[0], ("container",)) else "at"
+            parts.append(Literal(predicate, ("?x", there[0])))
+        body = parts[0] if len(parts) == 1 else And(tuple(parts))
+        return Meant(tuple(names), Quantified("forall", (variable,), body))
+
+    def _is(self, entity: str, types: Sequence[str]) -> bool:
+        known = self._world.entities.get(entity)
+        if known is None:
+            return False
+        return not types or any(self._world.domain.is_a(known.type, t) for t in types)
+
+    def _spoken(self, names: Iterable[str]) -> list[str]:
+        return [self._world.entities[n].spoken for n in names]
+
+    def _nothing_fits(self, mention: Mention, types: Sequence[str]) -> str:
+        there = [self._world.entities[e.name].spoken for e in self._world.of_type(*types)][:6]
+        what = " or ".join(types)
+        return f"I know no {what} called {mention.text}. I know {', '.join(there)}."
+
+
+_PLURAL = ("them", "they", "these", "those", "both", "both of them", "they both", "them both", "all of them", "everything")
+
+
+def _noun(mention: Mention) -> str:
+    for word in ("the ", "a ", "an ", "some ", "my ", "her ", "his ", "one "):
+        if mention.text.startswith(word):
+            return mention.text[len(word) :]
+    return mention.text

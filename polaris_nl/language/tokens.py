@@ -1,0 +1,74 @@
+"""Utterances as normal words: lower case, contractions written out, numbers as words, no fillers of spelling.
+
+The splitting is spaCy's (a blank English pipeline: rules, no statistical model).
+"""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from functools import cache
+from typing import Any
+
+LONGEST = 2_000
+"""Characters beyond which an utterance is refused: nobody says so much in one breath."""
+MOST_WORDS = 300
+
+_CONTRACTIONS = {
+    "n't": "not", "nt": "not", "'d": "would", "'ll": "will", "'m": "am", "'re": "are", "'ve": "have",
+    "ca": "can", "wo": "will", "sha": "shall", "cannot": "can",
+}  # fmt: skip
+_NUMBERS = (
+    "zero one two three four five six seven eight nine ten eleven twelve thirteen fourteen fifteen sixteen"
+    " seventeen eighteen nineteen twenty"
+).split()
+_SPELLINGS = {
+    "colour": "color", "grey": "gray", "favourite": "favorite", "centre": "center", "okay": "ok",
+    "til": "till", "'til": "till", "cos": "because", "gonna": "going", "wanna": "want", "lemme": "let",
+}  # fmt: skip
+BREAK, COMMA = ".", ","
+_BREAKS = {".": BREAK, "!": BREAK, "?": BREAK, ";": BREAK, ":": COMMA, ",": COMMA, "…": BREAK, "\n": BREAK}
+
+
+@cache
+def _tokenizer() -> Any:
+    import spacy
+
+    return spacy.blank("en").tokenizer
+
+
+def plain(text: str) -> str:
+    """A text without control characters, its quotes and dashes made simple."""
+    text = unicodedata.normalize("NFKC", text)
+    text = text.replace("\u2019", "'").replace("\u2018", "'").replace("\u2014", ", ").replace("\u2013", " ")
+    return "".join(c if c.isprintable() or c in "\n\t" else " " for c in text)
+
+
+def words(text: str) -> list[str]:
+    """The words of a text and its marks: `.` for the end of a sentence and `,` for a comma."""
+    lowered = re.sub(r"[\"“”()\[\]{}<>*_/\\|~^`#@=+%&$-]", " ", plain(text).lower())
+    lowered = re.sub(r"\s*\n\s*", " . ", lowered.strip())
+    # Marks stand alone, so that "1." and "home." are split the same way.
+    lowered = re.sub(r"([.,!?;:…])", r" \1 ", lowered)
+    found = []
+    for token in _tokenizer()(re.sub(r"\s+", " ", lowered).strip()):
+        word = token.text
+        if not word.isspace():
+            found.append(_normal(word, found))
+    return [word for word in found if word]
+
+
+def _normal(word: str, before: list[str]) -> str:
+    if word in _BREAKS:
+        return _BREAKS[word]
+    if word == "'":
+        return "'s" if before and before[-1].endswith("s") else ""
+    if word.isascii() and word.isdigit() and int(word) < len(_NUMBERS):
+        return _NUMBERS[int(word)]
+    return _CONTRACTIONS.get(word) or _SPELLINGS.get(word) or word
+
+
+@cache
+def phrase(text: str) -> tuple[str, ...]:
+    """The words of a name or a wording, without marks."""
+    return tuple(w for w in words(text.replace("_", " ")) if w not in (BREAK, COMMA))
