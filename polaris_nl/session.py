@@ -179,10 +179,8 @@ class Session:
         self._replanner.request(self._snapshot.revision, self._snapshot.automaton)
 
     def close(self) -> None:
-        """Ends the planning thread and the planner's child processes."""
+        """Ends the planning thread; a search that is under way is killed."""
         self._replanner.close()
-        if "planner" in self.__dict__:
-            self.planner.close()
 
     def __enter__(self) -> Session:
         return self

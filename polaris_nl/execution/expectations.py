@@ -1,0 +1,41 @@
+"""What an action needs of the world that only a person changes behind the robot's back, and what is seen instead."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from polaris_nl.execution.backend import Observation
+from polaris_nl.model.domain import Action, Operator, conjuncts
+from polaris_nl.model.formula import Literal, bind
+
+PLACES = ("at", "in", "has")
+"""Where objects are: if that is not as planned, somebody has moved one."""
+SEEN_AS = (*PLACES, "holding")
+
+
+def needed_places(action: Action, operator: Operator) -> tuple[Literal, ...]:
+    """The places of objects that an action's precondition asks for."""
+    bound = bind(operator.precondition, operator.binding(action))
+    return tuple(
+        part for part in conjuncts(bound) if isinstance(part, Literal) and part.positive and part.predicate in PLACES
+    )
+
+
+def perceived_instead(expected: Sequence[Literal], observation: Observation) -> tuple[Literal, ...]:
+    """The facts perceived about the things of which something else was expected."""
+    found: dict[Literal, None] = {}
+    for literal in expected:
+        thing = literal.args[-1] if literal.predicate == "has" else (literal.args[0] if literal.args else "")
+        if not literal.positive and literal.atom in observation.state.facts:
+            found[literal.atom] = None
+        for fact in sorted(observation.state.facts):
+            about = fact.args[-1] if fact.predicate == "has" else (fact.args[0] if fact.args else "")
+            if thing and about == thing and _comparable(literal, fact):
+                found[fact] = None
+    return tuple(found)
+
+
+def _comparable(expected: Literal, fact: Literal) -> bool:
+    if expected.predicate in SEEN_AS:
+        return fact.predicate in SEEN_AS
+    return fact.predicate == expected.predicate
