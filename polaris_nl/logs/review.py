@@ -1,0 +1,150 @@
+"""What a log says: summary, filters, differences. Pure functions of events."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from polaris_nl.execution.events import (
+    CheckpointReached,
+    CommandGiven,
+    Deviated,
+    Event,
+    Failed,
+    GoalConfirmed,
+    GoalSent,
+    Halted,
+    Heard,
+    Planned,
+    RunEnded,
+    RunStarted,
+    TransitionTaken,
+    Understood,
+    Waiting,
+)
+from polaris_nl.logs.schema import event_json
+
+PROBLEMS = (Deviated, Halted, Failed)
+_LEVELS = ("debug", "info", "warning", "error")
+
+
+@dataclass(frozen=True, slots=True)
+class Summary:
+    """A log in short.
+
+    Attributes:
+        said: what people said or typed.
+        understood: what was answered, in order.
+        plan: status of the last plan, or "".
+        outcome, reason: how the run ended; "" where it has no end.
+        checkpoints: the names reached, in order.
+        goals_sent, goals_done: how many actions were sent as goals, and were perceived as done.
+        problems: the texts of deviations, halts and failures, with their event numbers.
+        waited: what was waited for.
+        started, seconds: when the run started, and how long it took.
+    """
+
+    said: tuple[str, ...]
+    understood: tuple[str, ...]
+    plan: str
+    robot: str
+    outcome: str
+    reason: str
+    checkpoints: tuple[str, ...]
+    transitions: tuple[str, ...]
+    goals_sent: int
+    goals_done: int
+    problems: tuple[tuple[int, str], ...]
+    waited: tuple[str, ...]
+    commands: tuple[str, ...]
+    started: float
+    seconds: float
+    events: int
+
+
+def summary(events: Sequence[Event]) -> Summary:
+    """What was asked, understood, planned and done, how long it took, and what went wrong."""
+    ended = _last(events, RunEnded)
+    started = _last(events, RunStarted)
+    planned = _last(events, Planned)
+    first = started.time if started else (events[0].time if events else 0.0)
+    last = ended.time if ended else (events[-1].time if events else first)
+    return Summary(
+        said=tuple(e.utterance for e in events if isinstance(e, Heard)),
+        understood=tuple(e.text for e in events if isinstance(e, Understood)),
+        plan=planned.status if planned else "",
+        robot=started.robot if started else "",
+        outcome=ended.outcome if ended else "",
+        reason=ended.reason if ended else "",
+        checkpoints=tuple(e.name for e in events if isinstance(e, CheckpointReached)),
+        transitions=tuple(e.text for e in events if isinstance(e, TransitionTaken) and e.when),
+        goals_sent=sum(isinstance(e, GoalSent) for e in events),
+        goals_done=sum(isinstance(e, GoalConfirmed) for e in events),
+        problems=tuple((n, e.text) for n, e in enumerate(events, 1) if isinstance(e, PROBLEMS)),
+        waited=tuple(e.text for e in events if isinstance(e, Waiting)),
+        commands=tuple(e.command for e in events if isinstance(e, CommandGiven)),
+        started=first,
+        seconds=last - first,
+        events=len(events),
+    )
+
+
+def matcher(filters: Sequence[str]) -> Callable[[Event], bool]:
+    """A test for events: `topic=goal`, `severity=warning` (that and worse), or any text, all of which must hold."""
+    tests: list[Callable[[Event], bool]] = [_test(text) for text in filters]
+    return lambda event: all(test(event) for test in tests)
+
+
+def _test(text: str) -> Callable[[Event], bool]:
+    key, _, value = text.partition("=")
+    wanted = value.lower()
+    if value and key == "topic":
+        return lambda e: wanted in e.topic.lower()
+    if value and key == "severity" and wanted in _LEVELS:
+        return lambda e: _LEVELS.index(e.severity) >= _LEVELS.index(wanted)
+    everywhere = (value or key).lower()
+    return lambda e: everywhere in json.dumps(event_json(e), ensure_ascii=False).lower()
+
+
+def next_problem(events: Sequence[Event], after: int = 0) -> int | None:
+    """The number of the first problem after an event, or None."""
+    found = (n for n, e in enumerate(events, 1) if n > after and isinstance(e, PROBLEMS))
+    return next(found, None)
+
+
+def story(events: Sequence[Event]) -> list[str]:
+    """A run as comparable lines: what was done and decided, without times."""
+    lines = []
+    for event in events:
+        if isinstance(event, GoalSent):
+            lines.append(f"goal {event.action}")
+        elif isinstance(event, TransitionTaken):
+            lines.append(f"transition {event.source} to {event.target} {' '.join(event.when)}".rstrip())
+        elif isinstance(event, CheckpointReached):
+            lines.append(f"checkpoint {event.name}")
+        elif isinstance(event, Deviated):
+            lines.append(f"deviation: expected {' '.join(event.expected)}, saw {' '.join(event.observed)}")
+        elif isinstance(event, RunEnded):
+            lines.append(f"end: {event.outcome}. {event.reason}")
+    return lines
+
+
+def rows(events: Sequence[Event]) -> list[dict[str, Any]]:
+    """Events as flat rows for export."""
+    return [
+        {
+            "number": number,
+            "time": event.time,
+            "kind": type(event).__name__,
+            "topic": event.topic,
+            "severity": event.severity,
+            "text": event.text,
+        }
+        for number, event in enumerate(events, 1)
+    ]
+
+
+def _last(events: Sequence[Event], kind: type[Any]) -> Any:
+    return next((e for e in reversed(events) if isinstance(e, kind)), None)

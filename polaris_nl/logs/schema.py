@@ -1,0 +1,65 @@
+"""JSON Schemas of the event records, from their annotations, and events as JSON values."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+from collections.abc import Mapping
+from typing import Any, get_args, get_origin, get_type_hints
+
+from polaris_nl.execution.events import EVENTS, Event
+
+BY_TOPIC: Mapping[str, type[Event]] = {event.topic: event for event in EVENTS}
+_PLAIN: Mapping[Any, dict[str, Any]] = {
+    str: {"type": "string"},
+    int: {"type": "integer"},
+    float: {"type": "number"},
+    bool: {"type": "boolean"},
+    Any: {},
+}
+
+
+@functools.cache
+def schema_of(event: type[Event]) -> dict[str, Any]:
+    """The JSON Schema of an event class."""
+    hints = get_type_hints(event)
+    fields = dataclasses.fields(event)
+    required = [f.name for f in fields if f.default is dataclasses.MISSING and f.default_factory is dataclasses.MISSING]
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": f"polaris.{event.__name__}",
+        "description": (event.__doc__ or "").strip().splitlines()[0],
+        "type": "object",
+        "properties": {f.name: _type(hints[f.name]) for f in fields},
+        "required": required,
+        "additionalProperties": False,
+    }
+
+
+def event_json(event: Event) -> dict[str, Any]:
+    """An event as a JSON value."""
+    return {f.name: getattr(event, f.name) for f in dataclasses.fields(event)}
+
+
+def event_of(topic: str, value: Mapping[str, Any]) -> Event | None:
+    """The event of a topic's JSON value; None for a topic that isn't known.
+
+    Fields that this version doesn't know are left out, so that newer logs can be read.
+    """
+    kind = BY_TOPIC.get(topic)
+    if kind is None:
+        return None
+    known = {f.name for f in dataclasses.fields(kind)}
+    try:
+        return kind(**{k: v for k, v in value.items() if k in known})
+    except TypeError:
+        return None
+
+
+def _type(hint: Any) -> dict[str, Any]:
+    if hint in _PLAIN:
+        return dict(_PLAIN[hint])
+    origin, args = get_origin(hint), get_args(hint)
+    if origin is list:
+        return {"type": "array", "items": _type(args[0])}
+    return {"type": "object"}
