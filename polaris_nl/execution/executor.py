@@ -13,7 +13,14 @@ from dataclasses import dataclass, field, replace
 from typing import Literal as OneOf
 
 from polaris_nl.automaton.automaton import START, Automaton, Transition
-from polaris_nl.execution.backend import CancelGoal, Command, Observation, Report, SendGoal, StopRobot
+from polaris_nl.execution.backend import (
+    CancelGoal,
+    Command,
+    Observation,
+    Report,
+    SendGoal,
+    StopRobot,
+)
 from polaris_nl.execution.events import (
     CheckpointReached,
     CommandGiven,
@@ -124,7 +131,9 @@ class _Step:
         before = self.state.phase
         self.state = replace(self.state, phase=phase, since=self.now, holding_since=None, **changes)  # type: ignore[arg-type]
         if before != phase:
-            self.events.append(StateChanged(time=self.now, before=before, after=phase, reason=reason))
+            self.events.append(
+                StateChanged(time=self.now, before=before, after=phase, reason=reason)
+            )
 
     def sees(self, literal: Literal) -> bool:
         """Whether a literal is perceived."""
@@ -171,9 +180,15 @@ def step(
 
 
 def _take_report(work: _Step, report: Report) -> None:
-    if report.goal != work.state.goal or work.state.phase not in ("sending", "pursuing", "confirming"):
+    if report.goal != work.state.goal or work.state.phase not in (
+        "sending",
+        "pursuing",
+        "confirming",
+    ):
         return  # Late news about a goal that is over.
-    work.events.append(RobotReported(time=work.now, goal=report.goal, report=report.kind, reason=report.reason))
+    work.events.append(
+        RobotReported(time=work.now, goal=report.goal, report=report.kind, reason=report.reason)
+    )
     if report.kind == "accepted" and work.state.phase == "sending":
         work.go("pursuing")
     elif report.kind == "rejected":
@@ -263,7 +278,11 @@ def _waiting(work: _Step) -> None:
         outgoing = work.run.automaton.outgoing(work.state.checkpoint)
         words = [listed([work.run.wording.event(x) for x in t.when]) for t in outgoing]
         expected = tuple(x for t in outgoing for x in t.when)
-        _halt(work, f"I waited {limit:g} seconds, but it didn't happen that {listed(words, 'or')}", expected)
+        _halt(
+            work,
+            f"I waited {limit:g} seconds, but it didn't happen that {listed(words, 'or')}",
+            expected,
+        )
         return
     _decide(work)
 
@@ -317,7 +336,14 @@ def _next_action(work: _Step, action: Action) -> None:
             plan=[str(a) for a in segment.actions[work.state.done_actions :]],
         )
     )
-    work.go("sending", goal=number, goal_literals=literals, reported_at=None, sent_at=work.now, expected=())
+    work.go(
+        "sending",
+        goal=number,
+        goal_literals=literals,
+        reported_at=None,
+        sent_at=work.now,
+        expected=(),
+    )
 
 
 def _sending(work: _Step) -> None:
@@ -351,7 +377,11 @@ def _confirming(work: _Step) -> None:
 def _confirmed(work: _Step, action: Action, seconds: float, reported: str) -> None:
     work.events.append(
         GoalConfirmed(
-            time=work.now, goal=work.state.goal, action=str(action), seconds=round(seconds, 3), reported=reported
+            time=work.now,
+            goal=work.state.goal,
+            action=str(action),
+            seconds=round(seconds, 3),
+            reported=reported,
         )
     )
     work.go("idle", done_actions=work.state.done_actions + 1, retries=0, goal_literals=())
@@ -363,7 +393,9 @@ def _reach(work: _Step) -> None:
     work.events.append(
         CheckpointReached(time=work.now, text=text, checkpoint=checkpoint.id, name=checkpoint.name)
     )
-    work.go("idle", checkpoint=checkpoint.id, segment="", reached=(*work.state.reached, checkpoint.id))
+    work.go(
+        "idle", checkpoint=checkpoint.id, segment="", reached=(*work.state.reached, checkpoint.id)
+    )
 
 
 def _deviate(work: _Step, missing: tuple[Literal, ...]) -> None:
@@ -376,7 +408,9 @@ def _deviate(work: _Step, missing: tuple[Literal, ...]) -> None:
     work.events.append(
         Deviated(
             time=work.now,
-            text=sentence(f"I expected that {words}, but I see {_that(seen)}; I give it {grace:g} seconds"),
+            text=sentence(
+                f"I expected that {words}, but I see {_that(seen)}; I give it {grace:g} seconds"
+            ),
             expected=[str(x) for x in missing],
             observed=[str(x) for x in observed],
             grace_s=grace,
@@ -391,7 +425,9 @@ def _deviating(work: _Step) -> None:
         words = listed([work.run.wording.fact(x) for x in work.state.expected])
         text = sentence(f"that is put right: {words}")
         expected = [str(x) for x in work.state.expected]
-        work.events.append(Recovered(time=work.now, text=text, expected=expected, seconds=work.elapsed))
+        work.events.append(
+            Recovered(time=work.now, text=text, expected=expected, seconds=work.elapsed)
+        )
         work.go("idle", "put right")
     elif work.elapsed >= work.run.settings.grace_s:
         words = listed([work.run.wording.fact(x) for x in missing])

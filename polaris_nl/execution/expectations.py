@@ -17,7 +17,9 @@ def needed_places(action: Action, operator: Operator) -> tuple[Literal, ...]:
     """The places of objects that an action's precondition asks for."""
     bound = bind(operator.precondition, operator.binding(action))
     return tuple(
-        part for part in conjuncts(bound) if isinstance(part, Literal) and part.positive and part.predicate in PLACES
+        part
+        for part in conjuncts(bound)
+        if isinstance(part, Literal) and part.positive and part.predicate in PLACES
     )
 
 
@@ -25,11 +27,17 @@ def perceived_instead(expected: Sequence[Literal], observation: Observation) -> 
     """The facts perceived about the things of which something else was expected."""
     found: dict[Literal, None] = {}
     for literal in expected:
-        thing = literal.args[-1] if literal.predicate == "has" else (literal.args[0] if literal.args else "")
+        thing = (
+            literal.args[-1]
+            if literal.predicate == "has"
+            else (literal.args[0] if literal.args else "")
+        )
         if not literal.positive and literal.atom in observation.state.facts:
             found[literal.atom] = None
         for fact in sorted(observation.state.facts):
-            about = fact.args[-1] if fact.predicate == "has" else (fact.args[0] if fact.args else "")
+            about = (
+                fact.args[-1] if fact.predicate == "has" else (fact.args[0] if fact.args else "")
+            )
             if thing and about == thing and _comparable(literal, fact):
                 found[fact] = None
     return tuple(found)

@@ -9,7 +9,14 @@ from polaris_nl.automaton.program import Program, program_json
 from polaris_nl.execution.backend import Observation, Robot
 from polaris_nl.execution.clock import Clock
 from polaris_nl.execution.events import Event, Observed, RunEnded, RunStarted
-from polaris_nl.execution.executor import TERMINAL, ExecutorState, HumanCommand, Inputs, RunPlan, step
+from polaris_nl.execution.executor import (
+    TERMINAL,
+    ExecutorState,
+    HumanCommand,
+    Inputs,
+    RunPlan,
+    step,
+)
 from polaris_nl.model.errors import RunError
 from polaris_nl.model.evaluate import holds
 from polaris_nl.model.state import State
@@ -68,7 +75,11 @@ def run(
     world = plan.world
     program = program_json(Program(plan.automaton, world.domain.name, world.name))
     beliefs = [str(f) for f in sorted(observation.state.facts)]
-    sink(RunStarted(time=started, text="The run starts.", robot=robot.name, program=program, beliefs=beliefs))
+    sink(
+        RunStarted(
+            time=started, text="The run starts.", robot=robot.name, program=program, beliefs=beliefs
+        )
+    )
     state = ExecutorState(since=started)
     ended: RunEnded | None = None
     while True:
@@ -87,7 +98,9 @@ def run(
         clock.sleep(plan.settings.tick_s)
     assert ended is not None
     seconds = clock.now() - started
-    return RunResult(ended.outcome, ended.reason, tuple(ended.checkpoints), seconds, observation.state)
+    return RunResult(
+        ended.outcome, ended.reason, tuple(ended.checkpoints), seconds, observation.state
+    )
 
 
 def objectives_met(world: World, state: State) -> tuple[tuple[Objective, bool], ...]:

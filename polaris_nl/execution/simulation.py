@@ -10,7 +10,14 @@ import random
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from polaris_nl.execution.backend import CancelGoal, Command, Observation, Report, SendGoal, StopRobot
+from polaris_nl.execution.backend import (
+    CancelGoal,
+    Command,
+    Observation,
+    Report,
+    SendGoal,
+    StopRobot,
+)
 from polaris_nl.execution.events import Event, PersonActed
 from polaris_nl.model.domain import Action
 from polaris_nl.model.evaluate import after, applicable
@@ -100,7 +107,7 @@ class SimulatedRobot:
         self._mutexes = mutexes
         self._plan = plan
         self._settings = settings or SimulationSettings()
-        self._random = random.Random(self._settings.seed)  # noqa: S311 - a simulation
+        self._random = random.Random(self._settings.seed)
         self._faults = sorted(faults, key=lambda f: f.at)
         self._active: dict[str, int] = {}
         self._blind_until = start
@@ -187,7 +194,9 @@ class SimulatedRobot:
             action = task.actions.pop(0)
             operator = self._world.domain.operators[action.operator]
             if not applicable(action, operator, self.state, self._world):
-                self._reports.append(Report(task.goal.goal, "failed", "the world changed on the way"))
+                self._reports.append(
+                    Report(task.goal.goal, "failed", "the world changed on the way")
+                )
                 self._task = None
                 return
             self.state = after(action, operator, self.state, self._world)
@@ -201,18 +210,24 @@ class SimulatedRobot:
 
     def _people_act(self) -> None:
         for action in self._people:
-            enabled = action.name not in self._acted and all(self.state.holds(x) for x in action.when)
+            enabled = action.name not in self._acted and all(
+                self.state.holds(x) for x in action.when
+            )
             if not enabled:
                 self._acts_at.pop(action.name, None)
                 continue
             shortest, longest = self._settings.human_s
-            at = self._acts_at.setdefault(action.name, self._now + self._random.uniform(shortest, longest))
+            at = self._acts_at.setdefault(
+                action.name, self._now + self._random.uniform(shortest, longest)
+            )
             if self._now >= at:
                 self._acted.add(action.name)
                 self._make_true(action.effect)
                 text = sentence(f"somebody did this: {action.name}")
                 effect = [str(x) for x in action.effect]
-                self._sink(PersonActed(time=self._now, text=text, action=action.name, effect=effect))
+                self._sink(
+                    PersonActed(time=self._now, text=text, action=action.name, effect=effect)
+                )
 
     def _make_true(self, literals: Sequence[Literal]) -> None:
         self.state = self.state.after_event(literals, self._mutexes)
@@ -234,7 +249,9 @@ class SimulatedRobot:
         return left > 0
 
 
-def _willing(world: World, people: tuple[str, ...] | None, mutexes: Mutexes) -> tuple[HumanAction, ...]:
+def _willing(
+    world: World, people: tuple[str, ...] | None, mutexes: Mutexes
+) -> tuple[HumanAction, ...]:
     """The human actions that will be done: preferred ones, and of those that exclude each other the first."""
     actions = list(world.scenario.human_actions)
     if people is not None:
@@ -251,4 +268,6 @@ def _willing(world: World, people: tuple[str, ...] | None, mutexes: Mutexes) -> 
 
 
 def _rivals(a: HumanAction, b: HumanAction, mutexes: Mutexes) -> bool:
-    return any(mutexes.exclusive(x, y) for x in a.effect for y in b.effect if x.positive and y.positive)
+    return any(
+        mutexes.exclusive(x, y) for x in a.effect for y in b.effect if x.positive and y.positive
+    )

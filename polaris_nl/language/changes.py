@@ -69,7 +69,12 @@ class Changes:
         return None
 
     def _replaced(
-        self, utterance: str, match: Match, touched: Sequence[str], program: Automaton, dialogue: Dialogue
+        self,
+        utterance: str,
+        match: Match,
+        touched: Sequence[str],
+        program: Automaton,
+        dialogue: Dialogue,
     ) -> Meant | None:
         language = self._language
         new, old = match.slots.get("x"), match.slots.get("y")
@@ -89,7 +94,9 @@ class Changes:
         if not edits:
             return None
         after = replace(dialogue, scope=dialogue.scope.after(meant))
-        say = sentence(f"I've put {language.wording.entity(meant[0])} in place of {language.wording.entity(replaced)}")
+        say = sentence(
+            f"I've put {language.wording.entity(meant[0])} in place of {language.wording.entity(replaced)}"
+        )
         return Interpretation(utterance, "applied", say, tuple(edits)), after
 
     def _entities(
@@ -98,13 +105,23 @@ class Changes:
         """What is meant instead: "the other table" is not the one that is there."""
         resolver = self._language._resolver
         if not mention.other:
-            return resolver.meant(replace(mention, pronoun="one") if mention.pronoun == "one" else mention, (), dialogue.scope).entities
+            return resolver.meant(
+                replace(mention, pronoun="one") if mention.pronoun == "one" else mention,
+                (),
+                dialogue.scope,
+            ).entities
         used = _used(program, touched)
         fitting = [c.entity for c in mention.candidates if c.entity not in used]
         if mention.candidates and not fitting:
             raise Misfit("There is no other one.")
-        kept = replace(mention, other=False, candidates=tuple(c for c in mention.candidates if c.entity not in used))
-        return resolver._one([c.entity for c in kept.candidates], kept, replace(dialogue.scope, referents=())).entities
+        kept = replace(
+            mention,
+            other=False,
+            candidates=tuple(c for c in mention.candidates if c.entity not in used),
+        )
+        return resolver._one(
+            [c.entity for c in kept.candidates], kept, replace(dialogue.scope, referents=())
+        ).entities
 
     def _replaceable(
         self, new: str, old: object, touched: Sequence[str], program: Automaton, dialogue: Dialogue
@@ -126,7 +143,12 @@ class Changes:
     # Edits: "rename fetched to served", "before home, open the cupboard"
 
     def edited(
-        self, utterance: str, matches: Iterable[Match], tokens: Sequence[str], program: Automaton, dialogue: Dialogue
+        self,
+        utterance: str,
+        matches: Iterable[Match],
+        tokens: Sequence[str],
+        program: Automaton,
+        dialogue: Dialogue,
     ) -> Meant | None:
         """An edit of checkpoints that are there, or None where the utterance is none."""
         for match in matches:
@@ -141,9 +163,13 @@ class Changes:
             except EditError as error:
                 return self._language._refused(utterance, str(error)), dialogue
             if changed == program:
-                return Interpretation(utterance, "answer", "It is like that already; nothing changes."), dialogue
+                return Interpretation(
+                    utterance, "answer", "It is like that already; nothing changes."
+                ), dialogue
             here = touched[-1] if touched and touched[-1] in changed.checkpoints else None
-            after = replace(dialogue, here=here, touched=tuple(t for t in touched if t in changed.checkpoints))
+            after = replace(
+                dialogue, here=here, touched=tuple(t for t in touched if t in changed.checkpoints)
+            )
             return Interpretation(utterance, "applied", sentence(say), tuple(edits)), after
         return None
 
@@ -184,7 +210,12 @@ class Changes:
         return self._with_goals(match.intent, this, goals, when, program)
 
     def _with_goals(
-        self, intent: str, this: str, goals: tuple[Goal, ...], when: tuple[Literal, ...], program: Automaton
+        self,
+        intent: str,
+        this: str,
+        goals: tuple[Goal, ...],
+        when: tuple[Literal, ...],
+        program: Automaton,
     ) -> tuple[list[Edit], str, list[str]]:
         language = self._language
         name = program.checkpoints[this].name
@@ -202,11 +233,23 @@ class Changes:
             incoming = program.incoming(this)
             if incoming is None:
                 raise Misfit("")
-            return [InsertCheckpoint(new, incoming.id, arrow, when)], f"before {name}, {words}", [new.id]
+            return (
+                [InsertCheckpoint(new, incoming.id, arrow, when)],
+                f"before {name}, {words}",
+                [new.id],
+            )
         outgoing = program.outgoing(this)
         if len(outgoing) == 1 and not outgoing[0].when and not when:
-            return [InsertCheckpoint(new, outgoing[0].id, arrow)], f"after {name}, {words}", [new.id]
-        return [AddCheckpoint(new, Transition(arrow, this, new.id, when))], f"after {name}, {words}", [new.id]
+            return (
+                [InsertCheckpoint(new, outgoing[0].id, arrow)],
+                f"after {name}, {words}",
+                [new.id],
+            )
+        return (
+            [AddCheckpoint(new, Transition(arrow, this, new.id, when))],
+            f"after {name}, {words}",
+            [new.id],
+        )
 
     def _connected(
         self, match: Match, tokens: Sequence[str], program: Automaton, dialogue: Dialogue
@@ -221,7 +264,11 @@ class Changes:
         incoming = program.incoming(target)
         say = f"{two} comes after {one} now"
         if incoming is None:
-            return [Connect(Transition(program.fresh_transition_id(), source, target, when))], say, [target]
+            return (
+                [Connect(Transition(program.fresh_transition_id(), source, target, when))],
+                say,
+                [target],
+            )
         if incoming.source == source:
             return [SetConditional(incoming.id, when)], say, [target]
         return [MoveCheckpoint(target, source, when)], say, [target]

@@ -8,7 +8,7 @@ from typing import Literal as OneOf
 
 from polaris_nl.language.grammar import Grammar
 from polaris_nl.language.mention import Mention
-from polaris_nl.language.template import Sequence_, Slot, first_words, match
+from polaris_nl.language.template import Parts, Slot, first_words, match
 from polaris_nl.model.world import World
 
 Kind = OneOf["goal", "state", "wish", "ellipsis"]
@@ -51,7 +51,7 @@ class _Form:
     kind: Kind
     positive: bool
     cost: float
-    template: Sequence_
+    template: Parts
     types: Mapping[str, tuple[str, ...]]
 
 
@@ -84,7 +84,10 @@ class ClauseFinder:
         self, tokens: Sequence[str], start: int, mentions: Sequence[Sequence[Mention]]
     ) -> Iterator[Clause]:
         """The clauses that start at a position."""
-        forms = [*self._by_word.get(tokens[start], ()), *(self._anywhere if mentions[start] else ())]
+        forms = [
+            *self._by_word.get(tokens[start], ()),
+            *(self._anywhere if mentions[start] else ()),
+        ]
         for form in forms:
 
             def fillers(slot: Slot, at: int, form: _Form = form) -> Iterator[tuple[int, object]]:
@@ -98,7 +101,9 @@ class ClauseFinder:
                 if end > start:
                     yield self._clause(form, start, end, bound)
 
-    def _clause(self, form: _Form, start: int, end: int, bound: tuple[tuple[str, object], ...]) -> Clause:
+    def _clause(
+        self, form: _Form, start: int, end: int, bound: tuple[tuple[str, object], ...]
+    ) -> Clause:
         bindings = tuple((name, m) for name, m in bound if isinstance(m, Mention))
         cost = form.cost + sum(_mention_cost(m, form.types.get(n, ()), self) for n, m in bindings)
         return Clause(start, end, form.kind, form.predicate, form.positive, bindings, cost)
@@ -111,9 +116,13 @@ class ClauseFinder:
             return not types or bool(set(pronoun_types(mention.pronoun)) & set(types))
         domain = self._world.domain
         entities = self._world.entities
-        return not types or any(
-            domain.is_a(entities[c.entity].type, t) for c in mention.candidates for t in types
-        ) or self._place_of_surfaces(mention, types)
+        return (
+            not types
+            or any(
+                domain.is_a(entities[c.entity].type, t) for c in mention.candidates for t in types
+            )
+            or self._place_of_surfaces(mention, types)
+        )
 
     def _place_of_surfaces(self, mention: Mention, types: Sequence[str]) -> bool:
         """A region where a surface is wanted: "bring the cup to the kitchen" asks where in the kitchen."""

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from polaris_nl.language.template import Sequence_, parse_template
+from polaris_nl.language.template import Parts, parse_template
 from polaris_nl.language.tokens import phrase
 from polaris_nl.model.data import data_folder
 from polaris_nl.model.domain import Domain, Predicate
@@ -16,7 +16,16 @@ from polaris_nl.model.yaml_lines import Lined, read_yaml
 
 SCHEMA = "polaris-grammar/1"
 _PREDICATE_WORDINGS = ("goals", "not-goals", "states", "not-states", "asks", "ellipsis")
-_PREDICATE_TEXTS = ("fact", "not-fact", "goal", "not-goal", "event", "not-event", "name", "not-name")
+_PREDICATE_TEXTS = (
+    "fact",
+    "not-fact",
+    "goal",
+    "not-goal",
+    "event",
+    "not-event",
+    "name",
+    "not-name",
+)
 _PREDICATE_LISTS = ("adjectives", "not-adjectives")
 _DOMAIN_FIELDS = ("schema", "uses", "lists", "predicates", "operators", "names")
 
@@ -32,7 +41,7 @@ class Phrases:
     """
 
     predicate: str
-    wordings: Mapping[str, tuple[Sequence_, ...]] = field(default_factory=dict)
+    wordings: Mapping[str, tuple[Parts, ...]] = field(default_factory=dict)
     texts: Mapping[str, str] = field(default_factory=dict)
     adjectives: tuple[str, ...] = ()
     not_adjectives: tuple[str, ...] = ()
@@ -53,7 +62,7 @@ class Common:
         texts = value if isinstance(value, list) else []
         return sorted({phrase(str(t)) for t in texts}, key=lambda p: (-len(p), p))
 
-    def templates(self, *path: str) -> tuple[Sequence_, ...]:
+    def templates(self, *path: str) -> tuple[Parts, ...]:
         """A list of wordings."""
         value: object = self.values
         for key in path:
@@ -110,8 +119,12 @@ def read_grammar(path: Path, domain: Domain, common: Common, folder: Path) -> Gr
     try:
         root, _ = read_yaml(path)
         fields = root.mapping("A grammar", _DOMAIN_FIELDS)
-        check_schema(fields["schema"].text("schema") if "schema" in fields else "", SCHEMA, "grammar")
-        predicates: dict[str, Phrases] = {p.name: _plain(p, common) for p in domain.predicates.values()}
+        check_schema(
+            fields["schema"].text("schema") if "schema" in fields else "", SCHEMA, "grammar"
+        )
+        predicates: dict[str, Phrases] = {
+            p.name: _plain(p, common) for p in domain.predicates.values()
+        }
         operators: dict[str, str] = {}
         for used in fields["uses"].texts("uses") if "uses" in fields else ():
             shared = read_grammar(folder / f"{used}.yaml", domain, common, folder)
@@ -124,8 +137,12 @@ def read_grammar(path: Path, domain: Domain, common: Common, folder: Path) -> Gr
                 predicates[name] = _phrases(name, value, lists)
             elif "uses" in fields:
                 hint = did_you_mean(name, domain.predicates)
-                raise FormatError(f"The domain {domain.name} has no predicate {name}.{hint}", line=value.line)
-        operators.update({k: v for k, v in _texts(fields.get("operators")).items() if k in domain.operators})
+                raise FormatError(
+                    f"The domain {domain.name} has no predicate {name}.{hint}", line=value.line
+                )
+        operators.update(
+            {k: v for k, v in _texts(fields.get("operators")).items() if k in domain.operators}
+        )
         return Grammar(common, predicates, operators, _names(fields.get("names")))
     except FormatError as error:
         if error.path is not None:
@@ -136,7 +153,9 @@ def read_grammar(path: Path, domain: Domain, common: Common, folder: Path) -> Gr
 def _common(path: Path) -> Common:
     try:
         root, _ = read_yaml(path)
-        values = {key: _unlined(value) for key, value in root.mapping("A grammar", _keys(root)).items()}
+        values = {
+            key: _unlined(value) for key, value in root.mapping("A grammar", _keys(root)).items()
+        }
         check_schema(str(values.get("schema", "")), SCHEMA, "grammar")
         return Common(_texts(root.value.get("lists")), values)
     except FormatError as error:
@@ -144,17 +163,22 @@ def _common(path: Path) -> Common:
 
 
 def _phrases(name: str, value: Lined, lists: Mapping[str, str]) -> Phrases:
-    fields = value.mapping(f"The predicate {name}", (*_PREDICATE_WORDINGS, *_PREDICATE_TEXTS, *_PREDICATE_LISTS))
-    wordings: dict[str, tuple[Sequence_, ...]] = {}
+    fields = value.mapping(
+        f"The predicate {name}", (*_PREDICATE_WORDINGS, *_PREDICATE_TEXTS, *_PREDICATE_LISTS)
+    )
+    wordings: dict[str, tuple[Parts, ...]] = {}
     for key in _PREDICATE_WORDINGS:
-        found: list[Sequence_] = []
+        found: list[Parts] = []
         for item in fields[key].items(key) if key in fields else ():
             try:
                 found.append(parse_template(item.text("a wording"), lists))
                 if key in ("states", "not-states"):
                     # A state that should be brought about: "the tray should be on the table".
                     wished = item.text("a wording").replace("<be>", "<shall-be>")
-                    wordings[f"wished-{key}"] = (*wordings.get(f"wished-{key}", ()), parse_template(wished, lists))
+                    wordings[f"wished-{key}"] = (
+                        *wordings.get(f"wished-{key}", ()),
+                        parse_template(wished, lists),
+                    )
             except GrammarError as error:
                 raise FormatError(error.reason, line=item.line) from error
         wordings[key] = tuple(found)
@@ -171,7 +195,8 @@ def _plain(predicate: Predicate, common: Common) -> Phrases:
     """Phrases made of a predicate's name or of its author's `; NL:` comment."""
     slots = [p.name.lstrip("?") for p in predicate.parameters]
     hint = predicate.hint or " ".join(
-        [f"[{0}]"] * bool(slots) + [predicate.name.replace("-", " ").replace("_", " ")]
+        [f"[{0}]"] * bool(slots)
+        + [predicate.name.replace("-", " ").replace("_", " ")]
         + [f"[{i}]" for i in range(1, len(slots))]
     )
     text = hint
@@ -179,7 +204,11 @@ def _plain(predicate: Predicate, common: Common) -> Phrases:
         text = text.replace(f"[{index}]", f"{{{slot}}}")
     template = parse_template(text, common.lists)
     wished = parse_template(f"(have|make|get|make sure [that]) {text}", common.lists)
-    return Phrases(predicate.name, {"states": (template,), "goals": (wished,), "wished-states": (template,)}, {})
+    return Phrases(
+        predicate.name,
+        {"states": (template,), "goals": (wished,), "wished-states": (template,)},
+        {},
+    )
 
 
 def _texts(value: Lined | None) -> dict[str, str]:

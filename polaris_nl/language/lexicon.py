@@ -10,7 +10,13 @@ from polaris_nl.language.mention import Candidate
 from polaris_nl.language.tokens import phrase
 from polaris_nl.model.world import Entity, World
 
-_IRREGULAR = {"people": "person", "knives": "knife", "shelves": "shelf", "children": "child", "glasses": "glass"}
+_IRREGULAR = {
+    "people": "person",
+    "knives": "knife",
+    "shelves": "shelf",
+    "children": "child",
+    "glasses": "glass",
+}
 _TYPE_NOUNS = {
     "region": ("room", "place", "area"),
     "person": ("person",),
@@ -64,7 +70,10 @@ class Lexicon:
                     drafts[plural] = _Draft(dict(draft.ranks), True, draft.kind or "-".join(words))
         self._entries: Mapping[tuple[str, ...], Entry] = {
             words: Entry(
-                tuple(Candidate(e, r) for e, r in sorted(draft.ranks.items(), key=lambda i: (i[1], i[0]))),
+                tuple(
+                    Candidate(e, r)
+                    for e, r in sorted(draft.ranks.items(), key=lambda i: (i[1], i[0]))
+                ),
                 draft.plural,
                 draft.kind,
             )

@@ -28,7 +28,9 @@ class MentionFinder:
         self._pronouns = {tuple(k.split()): k for k in common.mapping("pronouns")}
         self._adjectives = _adjectives(grammar)
         self._which = sorted(
-            (tuple(x.split()) for x in _flat(common.lists.get("which-is", ""))), key=len, reverse=True
+            (tuple(x.split()) for x in _flat(common.lists.get("which-is", ""))),
+            key=len,
+            reverse=True,
         )
         self._from = sorted(
             (tuple(x.split()) for x in _flat(common.lists.get("from", ""))), key=len, reverse=True
@@ -90,7 +92,9 @@ class MentionFinder:
                 return
             at = step
 
-    def _noun(self, tokens: Sequence[str], start: int, at: int, mention: Mention) -> Iterator[Mention]:
+    def _noun(
+        self, tokens: Sequence[str], start: int, at: int, mention: Mention
+    ) -> Iterator[Mention]:
         for end, entry in self._lexicon.at(tokens, at):
             several = mention.quantifier or entry.plural
             found = replace(
@@ -116,7 +120,9 @@ class MentionFinder:
         for _ in range(4):
             for end, entry in self._lexicon.at(tokens, at):
                 text = " ".join(tokens[owner.start : end])
-                yield replace(base, end=end, text=text, candidates=entry.candidates, plural=entry.plural)
+                yield replace(
+                    base, end=end, text=text, candidates=entry.candidates, plural=entry.plural
+                )
             step, base = self._modifier(tokens, at, base)
             if step == at:
                 return

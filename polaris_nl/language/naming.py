@@ -28,7 +28,9 @@ class Names:
             for predicate, name in self._grammar.names:
                 if condition.predicate == predicate and condition.positive:
                     return name
-        first = next((x for goal in goals for x in literals_in(goal) if x.predicate != "kind"), None)
+        first = next(
+            (x for goal in goals for x in literals_in(goal) if x.predicate != "kind"), None
+        )
         if first is None:
             return self._waited(when)
         if goals and not isinstance(goals[0], Literal):
@@ -41,7 +43,9 @@ class Names:
     def _named(self, literal: Literal) -> str:
         phrases = self._grammar.predicates.get(literal.predicate)
         texts = phrases.texts if phrases else {}
-        name = texts.get("name" if literal.positive else "not-name") or literal.predicate.replace("-", " ")
+        name = texts.get("name" if literal.positive else "not-name") or literal.predicate.replace(
+            "-", " "
+        )
         predicate = self._world.domain.predicates[literal.predicate]
         for parameter, arg in zip(predicate.parameters, literal.args, strict=True):
             entity = self._world.entities.get(arg)

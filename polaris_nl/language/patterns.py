@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from polaris_nl.automaton.automaton import START, Automaton
 from polaris_nl.language.grammar import Common
 from polaris_nl.language.mention import Mention
-from polaris_nl.language.template import Sequence_, Slot, match
+from polaris_nl.language.template import Parts, Slot, match
 from polaris_nl.language.tokens import BREAK, COMMA, phrase
 
 Span = tuple[int, int]
@@ -51,7 +51,7 @@ class Patterns:
 
 def matches_of(
     intent: str,
-    template: Sequence_,
+    template: Parts,
     tokens: Sequence[str],
     mentions: Sequence[Sequence[Mention]],
     program: Automaton,
@@ -75,7 +75,16 @@ def matches_of(
 
 
 _PART = ("step", "part", "checkpoint", "one", "branch", "bit", "goal")
-_ORDINALS = {"first": 0, "second": 1, "third": 2, "fourth": 3, "fifth": 4, "sixth": 5, "last": -1, "latest": -1}
+_ORDINALS = {
+    "first": 0,
+    "second": 1,
+    "third": 2,
+    "fourth": 3,
+    "fifth": 4,
+    "sixth": 5,
+    "last": -1,
+    "latest": -1,
+}
 
 
 def checkpoints_at(
@@ -83,7 +92,11 @@ def checkpoints_at(
 ) -> Iterator[tuple[int, str]]:
     """Checkpoints that are meant by name, by number or by recency: (end, id)."""
     start = at
-    while at < len(tokens) and tokens[at] in ("the", "this", "that", "checkpoint", "step") and at - start < 2:
+    while (
+        at < len(tokens)
+        and tokens[at] in ("the", "this", "that", "checkpoint", "step")
+        and at - start < 2
+    ):
         at += 1
     made = [c for c in program.checkpoints if c != START]
     for checkpoint in made:

@@ -38,7 +38,9 @@ def answer_to(
     if literal is not None:
         return Interpretation(utterance, "answer", query=Query("is-it", literal=literal))
     if tokens and tokens[0] in ("why",):
-        return Interpretation(utterance, "answer", query=Query("why", checkpoint=_latest(dialogue, program)))
+        return Interpretation(
+            utterance, "answer", query=Query("why", checkpoint=_latest(dialogue, program))
+        )
     return None
 
 
@@ -74,7 +76,11 @@ def _query(
 
 
 def _condition(
-    language: Understanding, tokens: Sequence[str], span: object, scope: Scope, introduced: bool = False
+    language: Understanding,
+    tokens: Sequence[str],
+    span: object,
+    scope: Scope,
+    introduced: bool = False,
 ) -> tuple[Literal, ...]:
     """The literals of a condition in a span of tokens, or none."""
     assert isinstance(span, tuple)
@@ -101,7 +107,9 @@ def _is_goal(language: Understanding, tokens: Sequence[str], span: object) -> bo
     return bool(cuts) and not cuts[0].unknown
 
 
-def _yes_or_no(language: Understanding, tokens: Sequence[str], dialogue: Dialogue) -> Literal | None:
+def _yes_or_no(
+    language: Understanding, tokens: Sequence[str], dialogue: Dialogue
+) -> Literal | None:
     """`is the cupboard open` is the state "the cupboard is open" with its verb in front."""
     if len(tokens) < 3 or tokens[0] not in _QUESTION_WORDS:
         return None

@@ -36,7 +36,11 @@ class Questions:
         """The entity that an answer chooses; "" for none of them; None where it is no answer."""
         if tuple(tokens) in self._neither:
             return ""
-        core = [t for t in tokens if t not in ("the", "a", "an", "one", "number", "option", "please", "on", "in", "to")]
+        core = [
+            t
+            for t in tokens
+            if t not in ("the", "a", "an", "one", "number", "option", "please", "on", "in", "to")
+        ]
         if not core and tokens and tokens[-1] == "one" and options:
             return options[0][1]
         if len(core) == 1 and core[0] in self._ordinals:

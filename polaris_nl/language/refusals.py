@@ -16,15 +16,55 @@ from polaris_nl.model.text import listed
 from polaris_nl.model.world import World
 
 _SMALL = frozenset(
-    "the a an to of on in at and or it is are be my her his its me you i she he they them that this there with for"
-    " from do not then now please just some".split()
+    [
+        "the",
+        "a",
+        "an",
+        "to",
+        "of",
+        "on",
+        "in",
+        "at",
+        "and",
+        "or",
+        "it",
+        "is",
+        "are",
+        "be",
+        "my",
+        "her",
+        "his",
+        "its",
+        "me",
+        "you",
+        "i",
+        "she",
+        "he",
+        "they",
+        "them",
+        "that",
+        "this",
+        "there",
+        "with",
+        "for",
+        "from",
+        "do",
+        "not",
+        "then",
+        "now",
+        "please",
+        "just",
+        "some",
+    ]
 )
 
 
 class Refusals:
     """Puts refusals into words for one world."""
 
-    def __init__(self, world: World, grammar: Grammar, lexicon: Lexicon, wording: GrammarWording) -> None:
+    def __init__(
+        self, world: World, grammar: Grammar, lexicon: Lexicon, wording: GrammarWording
+    ) -> None:
         self._world = world
         self._grammar = grammar
         self._wording = wording
@@ -41,7 +81,11 @@ class Refusals:
         strange = [w for w in unknown if w not in self._known]
         if strange:
             near = self._near(strange)
-            hint = f" Did you mean {listed([f'the {n}' for n in near], 'or')}?" if near else f" {self.examples()}"
+            hint = (
+                f" Did you mean {listed([f'the {n}' for n in near], 'or')}?"
+                if near
+                else f" {self.examples()}"
+            )
             words = listed([f'"{w}"' for w in strange[:4]])
             return f"I don't understand {words}.{hint}"
         if unknown:

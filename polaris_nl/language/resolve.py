@@ -13,10 +13,12 @@ from polaris_nl.model.world import World
 _PLACE_PREDICATES = ("at", "in", "person-in", "located", "has")
 
 
-class Unclear(Exception):  # noqa: N818 - a question, not an error
+class Unclear(Exception):
     """A mention that may mean several entities, or none that is known: the reading has a hole."""
 
-    def __init__(self, about: str, options: Sequence[str], phrase: str = "", slot: str = "") -> None:
+    def __init__(
+        self, about: str, options: Sequence[str], phrase: str = "", slot: str = ""
+    ) -> None:
         super().__init__(about)
         self.about = about
         self.options = tuple(options)
@@ -24,7 +26,7 @@ class Unclear(Exception):  # noqa: N818 - a question, not an error
         self.slot = slot
 
 
-class Misfit(Exception):  # noqa: N818 - a reason to refuse, not an error
+class Misfit(Exception):
     """A reading that can't be: the reason is a sentence for the user."""
 
 
@@ -65,7 +67,9 @@ class Resolver:
     def __init__(self, world: World) -> None:
         self._world = world
 
-    def literals(self, clause: Clause, scope: Scope, condition: bool) -> tuple[tuple[Formula, ...], Scope]:
+    def literals(
+        self, clause: Clause, scope: Scope, condition: bool
+    ) -> tuple[tuple[Formula, ...], Scope]:
         """The goals, or the literals of a condition, that a clause asks for.
 
         Returns:
@@ -77,7 +81,11 @@ class Resolver:
         """
         predicate = self._world.domain.predicates[clause.predicate]
         bindings = dict(clause.bindings)
-        extra = [(n, m) for n, m in clause.bindings if f"?{n}" not in {p.name for p in predicate.parameters}]
+        extra = [
+            (n, m)
+            for n, m in clause.bindings
+            if f"?{n}" not in {p.name for p in predicate.parameters}
+        ]
         for _, mention in extra:
             scope = scope.after(self.meant(mention, ("person",), scope, condition).entities)
         chosen: list[Meant] = []
@@ -91,7 +99,9 @@ class Resolver:
             chosen.append(meant)
         goals = self._combined(clause, chosen)
         for name, mention in bindings.items():
-            parameter_types = next((p.types for p in predicate.parameters if p.name == f"?{name}"), ())
+            parameter_types = next(
+                (p.types for p in predicate.parameters if p.name == f"?{name}"), ()
+            )
             goals += self._said_of(mention, parameter_types, scope, condition)
         return tuple(dict.fromkeys(goals)), scope
 
@@ -107,7 +117,8 @@ class Resolver:
         quantified = every[0].every
         assert quantified is not None
         return tuple(
-            Quantified("forall", quantified.variables, Imply(quantified.body, literal)) for literal in literals
+            Quantified("forall", quantified.variables, Imply(quantified.body, literal))
+            for literal in literals
         )
 
     def _said_of(
@@ -116,7 +127,9 @@ class Resolver:
         """Goals in adjectives: "a full tray" is to be full, where the robot can see to it."""
         found: list[Formula] = []
         for part in mention.parts or (mention,):
-            for predicate, positive in part.states if not part.quantifier or part.quantifier != "all" else ():
+            for predicate, positive in (
+                part.states if not part.quantifier or part.quantifier != "all" else ()
+            ):
                 if condition or not self._world.domain.achievers(Literal(predicate, (), positive)):
                     continue
                 for entity in self.meant(part, types, scope, condition).entities:
@@ -139,7 +152,9 @@ class Resolver:
         question = {"surface": "Where to?", "container": "Into what?", "message": "About what?"}
         raise Unclear(question.get(what, f"Which {what}?"), options, "", parameter.name)
 
-    def meant(self, mention: Mention, types: Sequence[str], scope: Scope, condition: bool = False) -> Meant:
+    def meant(
+        self, mention: Mention, types: Sequence[str], scope: Scope, condition: bool = False
+    ) -> Meant:
         """The entities that a mention means.
 
         Raises:
@@ -150,7 +165,9 @@ class Resolver:
             if mention.alternative:
                 options = [self.meant(p, types, scope, condition).entities for p in mention.parts]
                 return self._one([n for o in options for n in o], mention, scope)
-            entities = [n for p in mention.parts for n in self.meant(p, types, scope, condition).entities]
+            entities = [
+                n for p in mention.parts for n in self.meant(p, types, scope, condition).entities
+            ]
             return Meant(tuple(dict.fromkeys(entities)))
         if mention.pronoun and mention.pronoun != "one":
             return self._pronoun(mention, types, scope)
@@ -161,7 +178,9 @@ class Resolver:
             return self._every(mention, types, names)
         if mention.quantifier in ("all", "both") or (mention.plural and not mention.number):
             if mention.quantifier == "both" and len(names) > 2:
-                raise Unclear(f"Which two do you mean by {mention.text}?", self._spoken(names), mention.text)
+                raise Unclear(
+                    f"Which two do you mean by {mention.text}?", self._spoken(names), mention.text
+                )
             return Meant(tuple(names))
         if mention.number and mention.number == len(names):
             return Meant(tuple(names))
@@ -186,7 +205,9 @@ class Resolver:
         if mention.pronoun == "one":
             names = reversed(scope.referents)
             nouns = {self._world.entities[n].noun for n in names if self._is(n, types)} - {""}
-            candidates = [Candidate(e.name, 1) for e in self._world.of_type(*types) if e.noun in nouns]
+            candidates = [
+                Candidate(e.name, 1) for e in self._world.of_type(*types) if e.noun in nouns
+            ]
         if not candidates and "surface" in types:
             candidates = self._surfaces_in(mention)
         if mention.owner:
@@ -194,7 +215,9 @@ class Resolver:
         if mention.place is not None:
             candidates = self._placed(candidates, mention.place, scope)
         if mention.other:
-            last = next((r for r in reversed(scope.referents) if r in {c.entity for c in candidates}), None)
+            last = next(
+                (r for r in reversed(scope.referents) if r in {c.entity for c in candidates}), None
+            )
             candidates = [c for c in candidates if c.entity != last]
         candidates = self._described(candidates, mention)
         if not candidates:
@@ -224,9 +247,13 @@ class Resolver:
             return (recent[0],)
         return tuple(p.name for p in people if owner == "any" or p.gender == owner)
 
-    def _placed(self, candidates: Sequence[Candidate], place: Mention, scope: Scope) -> list[Candidate]:
+    def _placed(
+        self, candidates: Sequence[Candidate], place: Mention, scope: Scope
+    ) -> list[Candidate]:
         try:
-            there = set(self.meant(place, ("surface", "container", "region", "person"), scope).entities)
+            there = set(
+                self.meant(place, ("surface", "container", "region", "person"), scope).entities
+            )
         except (Unclear, Misfit):
             return list(candidates)
         state = self._world.initial
@@ -234,7 +261,8 @@ class Resolver:
             c
             for c in candidates
             if any(
-                f.predicate in _PLACE_PREDICATES and c.entity in f.args and there & set(f.args) for f in state.facts
+                f.predicate in _PLACE_PREDICATES and c.entity in f.args and there & set(f.args)
+                for f in state.facts
             )
             or self._world.place_of(c.entity, state) in there
         ]
@@ -253,13 +281,17 @@ class Resolver:
         return true or list(candidates)
 
     def _surfaces_in(self, mention: Mention) -> list[Candidate]:
-        regions = {c.entity for c in mention.candidates if self._world.entities[c.entity].type == "region"}
+        regions = {
+            c.entity for c in mention.candidates if self._world.entities[c.entity].type == "region"
+        }
         best = min((c.rank for c in mention.candidates if c.entity in regions), default=0)
         regions = {c.entity for c in mention.candidates if c.entity in regions and c.rank == best}
         return [
             Candidate(f.args[0], 1)
             for f in sorted(self._world.facts)
-            if f.predicate == "located" and f.args[1] in regions and self._is(f.args[0], ("surface",))
+            if f.predicate == "located"
+            and f.args[1] in regions
+            and self._is(f.args[0], ("surface",))
         ]
 
     def _pronoun(self, mention: Mention, types: Sequence[str], scope: Scope) -> Meant:
@@ -269,9 +301,15 @@ class Resolver:
                 return Meant((user.name,))
             people = [p.name for p in self._world.of_type("person")]
             return self._one(people, replace(mention, other=True), scope)
-        if mention.pronoun in _PLURAL and scope.group and all(self._is(n, types) for n in scope.group):
+        if (
+            mention.pronoun in _PLURAL
+            and scope.group
+            and all(self._is(n, types) for n in scope.group)
+        ):
             return Meant(scope.group)
-        gender = {"she": "female", "her": "female", "he": "male", "him": "male"}.get(mention.pronoun, "")
+        gender = {"she": "female", "her": "female", "he": "male", "him": "male"}.get(
+            mention.pronoun, ""
+        )
         fitting = [
             r
             for r in reversed(scope.referents)
@@ -279,9 +317,7 @@ class Resolver:
         ]
         if fitting:
             return Meant((fitting[0],))
-        known = [
-            e.name for e in self._world.of_type(*types) if not gender or e.gender == gender
-        ]
+        known = [e.name for e in self._world.of_type(*types) if not gender or e.gender == gender]
         if gender and len(known) == 1:
             return Meant((known[0],))
         options = self._spoken(known) if len(known) <= 6 else []
@@ -317,7 +353,18 @@ class Resolver:
         return f"I know no {what} called {mention.text}. I know {', '.join(there)}."
 
 
-_PLURAL = ("them", "they", "these", "those", "both", "both of them", "they both", "them both", "all of them", "everything")
+_PLURAL = (
+    "them",
+    "they",
+    "these",
+    "those",
+    "both",
+    "both of them",
+    "they both",
+    "them both",
+    "all of them",
+    "everything",
+)
 
 
 def _noun(mention: Mention) -> str:

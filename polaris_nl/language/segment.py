@@ -82,13 +82,19 @@ class Segmenter:
     def cut(self, tokens: Sequence[str], mentions: Sequence[Sequence[Mention]]) -> list[Cut]:
         """The best ways to cut tokens, cheapest first."""
         size = len(tokens)
-        best: list[dict[_Mode, list[tuple[float, int, tuple[Item, ...]]]]] = [{} for _ in range(size + 1)]
+        best: list[dict[_Mode, list[tuple[float, int, tuple[Item, ...]]]]] = [
+            {} for _ in range(size + 1)
+        ]
         best[0]["plain"] = [(0.0, 0, ())]
         counter = 0
         for at in range(size):
             if not best[at]:
                 continue
-            clauses = list(self._clauses.at(tokens, at, mentions)) if tokens[at] not in (BREAK, COMMA) else []
+            clauses = (
+                list(self._clauses.at(tokens, at, mentions))
+                if tokens[at] not in (BREAK, COMMA)
+                else []
+            )
             marks = list(self._marks_at(tokens, at))
             fillers = list(self._fillers_at(tokens, at))
             for mode, paths in best[at].items():

@@ -39,7 +39,12 @@ class Spelling:
         return [self._mended(token, names) for token in tokens]
 
     def _mended(self, token: str, names: set[str]) -> str:
-        if token in self._known or token in names or token in (BREAK, COMMA) or len(token) < SHORTEST:
+        if (
+            token in self._known
+            or token in names
+            or token in (BREAK, COMMA)
+            or len(token) < SHORTEST
+        ):
             return token
         if not token.isalpha():
             return token

@@ -58,7 +58,9 @@ class Builder:
             source = self.here
         name = self.names.checkpoint(step.goals, step.when, self.program)
         checkpoint = Checkpoint(self.program.fresh_checkpoint_id(), name, step.goals)
-        transition = Transition(self.program.fresh_transition_id(), source, checkpoint.id, step.when)
+        transition = Transition(
+            self.program.fresh_transition_id(), source, checkpoint.id, step.when
+        )
         edit = AddCheckpoint(checkpoint, transition)
         self.program = apply(self.program, edit)
         self.edits.append(edit)
@@ -67,8 +69,12 @@ class Builder:
 
     def _fitting_place(self, when: Sequence[Literal]) -> str:
         """The checkpoint that a condition belongs to: its alert's, its object's, or the latest one."""
-        messages = {x.args[0] for x in when if x.predicate in ("acknowledged", "dismissed") and x.args}
-        alerting = self._latest(lambda goal: goal.predicate == "alerted-to" and goal.args[-1] in messages)
+        messages = {
+            x.args[0] for x in when if x.predicate in ("acknowledged", "dismissed") and x.args
+        }
+        alerting = self._latest(
+            lambda goal: goal.predicate == "alerted-to" and goal.args[-1] in messages
+        )
         if alerting is not None:
             return alerting
         if messages or self.here == START:
@@ -142,7 +148,9 @@ class _Reader:
                 self.finish()
         elif item.mark == "else":
             if not self.steps:
-                raise Misfit('"Otherwise" needs a condition before it: say "if ..., ... otherwise ...".')
+                raise Misfit(
+                    '"Otherwise" needs a condition before it: say "if ..., ... otherwise ...".'
+                )
             self._else_next, self._new_step = True, True
         elif item.mark == "not":
             self._negate = True
@@ -153,7 +161,9 @@ class _Reader:
         """A wait that nothing follows becomes an empty checkpoint."""
         if self._how in ("until", "if") and self._when:
             if self._how == "if":
-                raise Misfit("What should I do then? Say the condition and what to do, in one sentence.")
+                raise Misfit(
+                    "What should I do then? Say the condition and what to do, in one sentence."
+                )
             self.steps.append(Step((), self._when, "condition"))
         if self._unless:
             raise Misfit('"Unless" needs something to do: say "unless ..., ...".')
@@ -193,7 +203,11 @@ class _Reader:
     def _attach(self, previous: Step, when: tuple[Literal, ...], mark: str) -> None:
         if mark == "unless":
             self.steps[-1:] = [Step((), when, "condition"), replace(previous, role="else")]
-        elif mark == "until" and all(not x.positive for x in _flat(previous.goals)) and previous.goals:
+        elif (
+            mark == "until"
+            and all(not x.positive for x in _flat(previous.goals))
+            and previous.goals
+        ):
             # "Don't open it until she comes" is "when she comes, open it".
             goals = tuple(x.negation for x in _flat(previous.goals))
             self.steps[-1] = Step(goals, when, "condition")
@@ -247,4 +261,8 @@ def _all_postposed(items: Sequence[Item]) -> bool:
     marks = [i.mark for i in items]
     if len(roles) < 4 or "until" in marks or "then" in marks:
         return False
-    return roles[0] == "goal" and roles[-1] == "condition" and roles == ["goal", "condition"] * (len(roles) // 2)
+    return (
+        roles[0] == "goal"
+        and roles[-1] == "condition"
+        and roles == ["goal", "condition"] * (len(roles) // 2)
+    )

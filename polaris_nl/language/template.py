@@ -36,20 +36,20 @@ class Slot:
 class Choice:
     """One of several sequences; an empty one makes it optional."""
 
-    options: tuple[Sequence_, ...]
+    options: tuple[Parts, ...]
 
 
 Part = Word | Slot | Choice
 
 
 @dataclass(frozen=True, slots=True)
-class Sequence_:  # noqa: N801 - `Sequence` is taken by the standard library
+class Parts:
     """Parts, one after the other."""
 
     parts: tuple[Part, ...]
 
 
-def parse_template(text: str, lists: Mapping[str, str]) -> Sequence_:
+def parse_template(text: str, lists: Mapping[str, str]) -> Parts:
     """Reads a wording.
 
     Raises:
@@ -59,7 +59,7 @@ def parse_template(text: str, lists: Mapping[str, str]) -> Sequence_:
     parts, rest = _sequence(symbols, 0, text, lists)
     if rest != len(symbols):
         raise GrammarError(f"There is one closing bracket too many in {text!r}.")
-    return Sequence_(parts)
+    return Parts(parts)
 
 
 def _sequence(
@@ -91,7 +91,7 @@ def _choice(
     options = []
     while True:
         parts, at = _sequence(symbols, at, text, lists)
-        options.append(Sequence_(parts))
+        options.append(Parts(parts))
         if at >= len(symbols):
             raise GrammarError(f"A bracket is never closed in {text!r}.")
         at += 1
@@ -100,7 +100,7 @@ def _choice(
         if symbols[at - 1] != "|":
             raise GrammarError(f"A bracket is closed by the wrong one in {text!r}.")
     if closing == "]":
-        options.append(Sequence_(()))
+        options.append(Parts(()))
     return Choice(tuple(options)), at
 
 
@@ -116,13 +116,20 @@ class Fillers(Protocol):
         ...
 
 
-def match(template: Sequence_, tokens: Sequence[str], at: int, fillers: Fillers) -> Iterator[tuple[int, Bound]]:
+def match(
+    template: Parts, tokens: Sequence[str], at: int, fillers: Fillers
+) -> Iterator[tuple[int, Bound]]:
     """Every way in which a wording matches tokens from a position: its end, and what fills its slots."""
     yield from _match(template.parts, 0, tokens, at, fillers, ())
 
 
 def _match(
-    parts: tuple[Part, ...], index: int, tokens: Sequence[str], at: int, fillers: Fillers, bound: Bound
+    parts: tuple[Part, ...],
+    index: int,
+    tokens: Sequence[str],
+    at: int,
+    fillers: Fillers,
+    bound: Bound,
 ) -> Iterator[tuple[int, Bound]]:
     if index == len(parts):
         yield at, bound
@@ -143,7 +150,7 @@ def _match(
                     yield from _match(parts, index + 1, tokens, end, fillers, inner)
 
 
-def first_words(template: Sequence_) -> frozenset[str] | None:
+def first_words(template: Parts) -> frozenset[str] | None:
     """The words that a match can start with; None where a slot can stand first."""
     words: set[str] = set()
     return frozenset(words) if _first(template.parts, words) else None
@@ -168,7 +175,7 @@ def _first(parts: tuple[Part, ...], words: set[str]) -> bool:
     return False
 
 
-def vocabulary(template: Sequence_) -> Iterator[str]:
+def vocabulary(template: Parts) -> Iterator[str]:
     """Every word of a wording."""
     for part in template.parts:
         if isinstance(part, Word):

@@ -18,16 +18,44 @@ _CONTRACTIONS = {
     "n't": "not", "nt": "not", "'d": "would", "'ll": "will", "'m": "am", "'re": "are", "'ve": "have",
     "ca": "can", "wo": "will", "sha": "shall", "cannot": "can",
 }  # fmt: skip
-_NUMBERS = (
-    "zero one two three four five six seven eight nine ten eleven twelve thirteen fourteen fifteen sixteen"
-    " seventeen eighteen nineteen twenty"
-).split()
+_NUMBERS = [
+    "zero",
+    "one",
+    "two",
+    "three",
+    "four",
+    "five",
+    "six",
+    "seven",
+    "eight",
+    "nine",
+    "ten",
+    "eleven",
+    "twelve",
+    "thirteen",
+    "fourteen",
+    "fifteen",
+    "sixteen",
+    "seventeen",
+    "eighteen",
+    "nineteen",
+    "twenty",
+]
 _SPELLINGS = {
     "colour": "color", "grey": "gray", "favourite": "favorite", "centre": "center", "okay": "ok",
     "til": "till", "'til": "till", "cos": "because", "gonna": "going", "wanna": "want", "lemme": "let",
 }  # fmt: skip
 BREAK, COMMA = ".", ","
-_BREAKS = {".": BREAK, "!": BREAK, "?": BREAK, ";": BREAK, ":": COMMA, ",": COMMA, "…": BREAK, "\n": BREAK}
+_BREAKS = {
+    ".": BREAK,
+    "!": BREAK,
+    "?": BREAK,
+    ";": BREAK,
+    ":": COMMA,
+    ",": COMMA,
+    "…": BREAK,
+    "\n": BREAK,
+}
 
 
 @cache
@@ -40,7 +68,12 @@ def _tokenizer() -> Any:
 def plain(text: str) -> str:
     """A text without control characters, its quotes and dashes made simple."""
     text = unicodedata.normalize("NFKC", text)
-    text = text.replace("\u2019", "'").replace("\u2018", "'").replace("\u2014", ", ").replace("\u2013", " ")
+    text = (
+        text.replace("\u2019", "'")
+        .replace("\u2018", "'")
+        .replace("\u2014", ", ")
+        .replace("\u2013", " ")
+    )
     return "".join(c if c.isprintable() or c in "\n\t" else " " for c in text)
 
 

@@ -7,7 +7,6 @@ from dataclasses import replace
 from functools import cached_property
 
 from polaris_nl.automaton.automaton import START, Automaton
-from polaris_nl.language.queries import answer_to
 from polaris_nl.language.changes import Changes
 from polaris_nl.language.clauses import ClauseFinder
 from polaris_nl.language.dialogue import Dialogue, Pending
@@ -20,6 +19,7 @@ from polaris_nl.language.mentions import MentionFinder
 from polaris_nl.language.naming import Names
 from polaris_nl.language.patterns import Patterns, strip
 from polaris_nl.language.phrases import recogniser_phrases
+from polaris_nl.language.queries import answer_to
 from polaris_nl.language.questions import Questions
 from polaris_nl.language.refusals import Refusals
 from polaris_nl.language.resolve import Misfit, Resolver, Unclear
@@ -83,14 +83,20 @@ class Understanding:
         """
         dialogue = dialogue or Dialogue()
         if len(utterance) > LONGEST:
-            return self._refused(utterance[:60] + "...", "That is too long; say it in several sentences."), dialogue
+            return self._refused(
+                utterance[:60] + "...", "That is too long; say it in several sentences."
+            ), dialogue
         tokens = words(utterance)
         if len(tokens) > MOST_WORDS:
-            return self._refused(utterance, "That is too long; say it in several sentences."), dialogue
+            return self._refused(
+                utterance, "That is too long; say it in several sentences."
+            ), dialogue
         tokens = self._spelling.mended(tokens, program)
         bare = strip(tokens, self._fillers)
         if not any(t not in (BREAK, COMMA) for t in tokens):
-            return self._refused(utterance, "I heard nothing. Say what the robot should achieve."), dialogue
+            return self._refused(
+                utterance, "I heard nothing. Say what the robot should achieve."
+            ), dialogue
         pending = dialogue.pending
         dialogue = replace(dialogue, pending=None)
         if pending is not None:
@@ -119,17 +125,28 @@ class Understanding:
     # Ways to understand, in order
 
     def _fresh(
-        self, utterance: str, tokens: Sequence[str], bare: Sequence[str], program: Automaton, dialogue: Dialogue
+        self,
+        utterance: str,
+        tokens: Sequence[str],
+        bare: Sequence[str],
+        program: Automaton,
+        dialogue: Dialogue,
     ) -> tuple[Interpretation, Dialogue]:
         command = self._commands.get(tuple(t for t in tokens if t not in (BREAK, COMMA)))
         command = command or self._commands.get(tuple(bare))
         if command is not None:
             say = self.help if command == "help" else ""
-            return Interpretation(utterance, "command", say or _COMMAND_SAYS.get(command, ""), command=command), dialogue
+            return Interpretation(
+                utterance, "command", say or _COMMAND_SAYS.get(command, ""), command=command
+            ), dialogue
         mentions = self.mentions(bare)
         changed = self._changes.corrected(utterance, bare, mentions, program, dialogue)
         changed = changed or self._changes.edited(
-            utterance, self._edits.matches(bare, mentions, program, dialogue.touched), bare, program, dialogue
+            utterance,
+            self._edits.matches(bare, mentions, program, dialogue.touched),
+            bare,
+            program,
+            dialogue,
         )
         if changed is not None:
             return changed
@@ -179,11 +196,19 @@ class Understanding:
             for step in steps:
                 builder.add(step)
             after = replace(
-                dialogue, here=builder.here, touched=tuple(builder.touched), anchor=builder.anchor, scope=scope
+                dialogue,
+                here=builder.here,
+                touched=tuple(builder.touched),
+                anchor=builder.anchor,
+                scope=scope,
             )
             say = steps_in_words(steps, self.wording)
-            reading = Reading(say, -cut.cost, tuple(f"{i.role or i.mark}: {i.text}" for i in cut.items))
-            meant = Interpretation(utterance, "applied", say, tuple(builder.edits), readings=(reading,))
+            reading = Reading(
+                say, -cut.cost, tuple(f"{i.role or i.mark}: {i.text}" for i in cut.items)
+            )
+            meant = Interpretation(
+                utterance, "applied", say, tuple(builder.edits), readings=(reading,)
+            )
             yield cut.cost, meant, after
 
     def _builder(self, program: Automaton, dialogue: Dialogue) -> Builder:
@@ -196,16 +221,25 @@ class Understanding:
 
     # Questions and refusals
 
-    def _asked(self, utterance: str, unclear: Unclear, dialogue: Dialogue) -> tuple[Interpretation, Dialogue]:
+    def _asked(
+        self, utterance: str, unclear: Unclear, dialogue: Dialogue
+    ) -> tuple[Interpretation, Dialogue]:
         question = Question(unclear.about, unclear.options)
         by_name = {self.world.entities[e].spoken: e for e in self.world.entities}
         options = tuple((o, by_name.get(o, o)) for o in unclear.options)
         say = self._questions.asked(unclear.about, unclear.options)
         pending = Pending(utterance, unclear.phrase, options)
-        return Interpretation(utterance, "question", say, question=question), replace(dialogue, pending=pending)
+        return Interpretation(utterance, "question", say, question=question), replace(
+            dialogue, pending=pending
+        )
 
     def _answered(
-        self, utterance: str, bare: Sequence[str], pending: Pending, program: Automaton, dialogue: Dialogue
+        self,
+        utterance: str,
+        bare: Sequence[str],
+        pending: Pending,
+        program: Automaton,
+        dialogue: Dialogue,
     ) -> tuple[Interpretation, Dialogue] | None:
         """Reads an utterance as the answer to the open question, or None where it is something else."""
         chosen = self._questions.choice(bare, pending.options, self.mentions(bare))
@@ -215,7 +249,9 @@ class Understanding:
             say = "All right, I left that out. Say it another way."
             return Interpretation(utterance, "answer", say), dialogue
         if pending.phrase:
-            scope = replace(dialogue.scope, choices={**dialogue.scope.choices, pending.phrase: chosen})
+            scope = replace(
+                dialogue.scope, choices={**dialogue.scope.choices, pending.phrase: chosen}
+            )
             text = pending.utterance
         else:
             scope = dialogue.scope

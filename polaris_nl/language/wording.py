@@ -43,9 +43,17 @@ class GrammarWording:
             return self._filled(literal, "fact") or self._plain.fact(literal)
         every = _every(literal)
         if every is None:
-            return listed([self.fact(p) for p in literal.parts]) if isinstance(literal, And) else str(literal)
+            return (
+                listed([self.fact(p) for p in literal.parts])
+                if isinstance(literal, And)
+                else str(literal)
+            )
         condition, conclusion, variable = every
-        return self.fact(conclusion).replace("the x", self._all(condition, variable)).replace(" is ", " are ")
+        return (
+            self.fact(conclusion)
+            .replace("the x", self._all(condition, variable))
+            .replace(" is ", " are ")
+        )
 
     def goal(self, goal: Formula) -> str:
         """An imperative: "bring the tray to the resident's table"."""
@@ -53,7 +61,9 @@ class GrammarWording:
             return self._filled(goal, "goal") or f"make sure that {self.fact(goal)}"
         every = _every(goal)
         if every is None:
-            return listed([self.goal(p) for p in goal.parts]) if isinstance(goal, And) else str(goal)
+            return (
+                listed([self.goal(p) for p in goal.parts]) if isinstance(goal, And) else str(goal)
+            )
         condition, conclusion, variable = every
         return self.goal(conclusion).replace("the x", self._all(condition, variable))
 
@@ -121,7 +131,11 @@ class GrammarWording:
 
 def _every(goal: Formula) -> tuple[Formula, Formula, str] | None:
     """Condition, conclusion and type of a `forall` with an `imply`."""
-    if isinstance(goal, Quantified) and goal.quantifier == "forall" and isinstance(goal.body, Imply):
+    if (
+        isinstance(goal, Quantified)
+        and goal.quantifier == "forall"
+        and isinstance(goal.body, Imply)
+    ):
         types = goal.variables[0].types
         return goal.body.condition, goal.body.conclusion, types[0] if types else "thing"
     return None

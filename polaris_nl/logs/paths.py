@@ -29,7 +29,9 @@ def new_log_path(name: str, folder: Path | None = None) -> Path:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise LogError(f"Can't make the log folder {folder}: {error.strerror}. Use --log FILE.") from error
+        raise LogError(
+            f"Can't make the log folder {folder}: {error.strerror}. Use --log FILE."
+        ) from error
     stem = f"{time.strftime('%Y-%m-%d_%H-%M-%S')}_{re.sub(r'[^a-z0-9-]+', '-', name.lower())}"
     path, number = folder / f"{stem}.mcap", 2
     while path.exists():

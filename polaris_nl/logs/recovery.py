@@ -8,7 +8,17 @@ from pathlib import Path
 from typing import IO, Any
 
 from mcap.exceptions import McapError
-from mcap.records import Attachment, Channel, DataEnd, Footer, Header, McapRecord, Message, Metadata, Schema
+from mcap.records import (
+    Attachment,
+    Channel,
+    DataEnd,
+    Footer,
+    Header,
+    McapRecord,
+    Message,
+    Metadata,
+    Schema,
+)
 from mcap.stream_reader import StreamReader
 from mcap.writer import CompressionType, Writer
 
@@ -50,11 +60,26 @@ def records(path: Path) -> Iterator[McapRecord]:
         file.seek(0)
         try:
             yield from StreamReader(file, record_size_limit=None).records
-        except (McapError, EOFError, ValueError, KeyError, IndexError, MemoryError, OverflowError, ArithmeticError):
+        except (
+            McapError,
+            EOFError,
+            ValueError,
+            KeyError,
+            IndexError,
+            MemoryError,
+            OverflowError,
+            ArithmeticError,
+        ):
             return
         except Exception as error:
             # The reader's decompressors have exceptions of their own; a damaged chunk ends the reading as well.
-            if type(error).__module__.partition(".")[0] in ("lz4", "zstandard", "zstd", "struct", "builtins"):
+            if type(error).__module__.partition(".")[0] in (
+                "lz4",
+                "zstandard",
+                "zstd",
+                "struct",
+                "builtins",
+            ):
                 return
             raise
 
@@ -70,7 +95,9 @@ def recover(path: Path, target: Path | None = None) -> Recovery:
         with target.open("w+b") as out:
             messages, complete = copy_records(path, out)
     except OSError as error:
-        raise LogError(f"Can't write {target}: {error.strerror}. Make room, or choose another place.") from error
+        raise LogError(
+            f"Can't write {target}: {error.strerror}. Make room, or choose another place."
+        ) from error
     return Recovery(target, messages, complete)
 
 
@@ -97,7 +124,11 @@ def copy_records(path: Path, out: IO[bytes]) -> tuple[int, bool]:
             )
         elif isinstance(record, Message) and record.channel_id in channels:
             writer.add_message(
-                channels[record.channel_id], record.log_time, record.data, record.publish_time, record.sequence
+                channels[record.channel_id],
+                record.log_time,
+                record.data,
+                record.publish_time,
+                record.sequence,
             )
             state["messages"] += 1
         elif isinstance(record, Attachment):

@@ -121,11 +121,15 @@ def story(events: Sequence[Event]) -> list[str]:
         if isinstance(event, GoalSent):
             lines.append(f"goal {event.action}")
         elif isinstance(event, TransitionTaken):
-            lines.append(f"transition {event.source} to {event.target} {' '.join(event.when)}".rstrip())
+            lines.append(
+                f"transition {event.source} to {event.target} {' '.join(event.when)}".rstrip()
+            )
         elif isinstance(event, CheckpointReached):
             lines.append(f"checkpoint {event.name}")
         elif isinstance(event, Deviated):
-            lines.append(f"deviation: expected {' '.join(event.expected)}, saw {' '.join(event.observed)}")
+            lines.append(
+                f"deviation: expected {' '.join(event.expected)}, saw {' '.join(event.observed)}"
+            )
         elif isinstance(event, RunEnded):
             lines.append(f"end: {event.outcome}. {event.reason}")
     return lines

@@ -24,7 +24,11 @@ def schema_of(event: type[Event]) -> dict[str, Any]:
     """The JSON Schema of an event class."""
     hints = get_type_hints(event)
     fields = dataclasses.fields(event)
-    required = [f.name for f in fields if f.default is dataclasses.MISSING and f.default_factory is dataclasses.MISSING]
+    required = [
+        f.name
+        for f in fields
+        if f.default is dataclasses.MISSING and f.default_factory is dataclasses.MISSING
+    ]
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": f"polaris.{event.__name__}",

@@ -18,7 +18,15 @@ from typing import IO, Any
 from mcap.writer import CompressionType, Writer
 
 from polaris_nl import __version__
-from polaris_nl.execution.events import Edited, Event, GoalConfirmed, GoalSent, Halted, RunEnded, RunStarted
+from polaris_nl.execution.events import (
+    Edited,
+    Event,
+    GoalConfirmed,
+    GoalSent,
+    Halted,
+    RunEnded,
+    RunStarted,
+)
 from polaris_nl.logs import rosout
 from polaris_nl.logs.schema import event_json, schema_of
 from polaris_nl.model.errors import LogError
@@ -49,9 +57,13 @@ class LogWriter:
         try:
             self._file: IO[bytes] = path.open("xb")
         except FileExistsError as error:
-            raise LogError(f"There is a file {path} already; choose another name for the log.") from error
+            raise LogError(
+                f"There is a file {path} already; choose another name for the log."
+            ) from error
         except OSError as error:
-            raise LogError(f"Can't write the log {path}: {error.strerror}. Choose another place.") from error
+            raise LogError(
+                f"Can't write the log {path}: {error.strerror}. Choose another place."
+            ) from error
         self._writer = Writer(self._file, use_chunking=False, compression=CompressionType.NONE)
         try:
             self._start(attachments or {})
@@ -67,7 +79,9 @@ class LogWriter:
         definition = rosout.DEFINITION.encode()
         schema = self._writer.register_schema(rosout.TYPE, "ros2msg", definition)
         qos = {"offered_qos_profiles": ""}
-        self._channels[rosout.TOPIC] = self._writer.register_channel(rosout.TOPIC, "cdr", schema, qos)
+        self._channels[rosout.TOPIC] = self._writer.register_channel(
+            rosout.TOPIC, "cdr", schema, qos
+        )
         self._flush()
 
     def write(self, event: Event) -> bool:
@@ -111,7 +125,10 @@ class LogWriter:
         return self
 
     def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
     ) -> None:
         self.close()
 

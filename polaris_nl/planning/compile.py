@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
 from polaris_nl.automaton.automaton import START, Automaton, Checkpoint, Transition
 from polaris_nl.automaton.validation import validate
+from polaris_nl.model.domain import KIND
 from polaris_nl.model.evaluate import after, applicable, ground_goals
-from polaris_nl.model.formula import Formula, Literal, bind
+from polaris_nl.model.formula import And, Formula, Imply, Literal, Quantified, bind
 from polaris_nl.model.state import Mutexes, State
 from polaris_nl.model.wording import Wording
 from polaris_nl.model.world import World
@@ -24,6 +25,7 @@ from polaris_nl.planning.warnings import warnings_of
 class _Work:
     segments: dict[str, Segment] = field(default_factory=dict)
     problems: list[Problem] = field(default_factory=list)
+    cancelled: bool = False
 
 
 class Compiler:
@@ -58,11 +60,14 @@ class Compiler:
             only_under = all(f.cause == "underspecified" for f in faults)
             status: Status = "underspecified" if only_under else "invalid"
             return BranchingPlan(status, {}, None, problems, (), _ms(started))
+        no_goals = tuple(_no_goals(automaton))
+        if no_goals:
+            return BranchingPlan("invalid", {}, None, no_goals, (), _ms(started))
         work = _Work()
         self._walk(automaton, work, cancelled)
         tree = plan_tree(automaton, work.segments, self._world)
         warnings = self._warnings(automaton, work)
-        status = _status(work, automaton)
+        status = _status(work)
         return BranchingPlan(
             status, work.segments, tree, tuple(work.problems), warnings, _ms(started)
         )
@@ -72,10 +77,13 @@ class Compiler:
         while waiting:
             transition, before = waiting.pop()
             if cancelled():
+                work.cancelled = True
                 return
             checkpoint = automaton.checkpoints[transition.target]
             state = before.after_event(transition.when, self._mutexes)
             segment = self._segment(automaton, checkpoint, transition, state, work, cancelled)
+            if work.cancelled:
+                return
             if segment is None:
                 work.problems.extend(self._inside(automaton, checkpoint))
                 continue
@@ -95,12 +103,13 @@ class Compiler:
             return self._insisted(checkpoint, transition, state, work, cancelled)
         goals = ground_goals(checkpoint.goals, state, self._world)
         place = Place(automaton, checkpoint, transition, state, goals)
-        problem = self._diagnosis.conflict(place)
+        problem = self._diagnosis.conflict(place, cancelled)
         if problem is None:
             result = self._solve(state, goals, cancelled)
             if result.status == "solved":
                 return self._made(transition, checkpoint, state, goals, result)
             if result.status == "cancelled":
+                work.cancelled = True
                 return None
             problem = self._diagnosis.failure(place, result, cancelled)
         work.problems.append(problem)
@@ -122,6 +131,9 @@ class Compiler:
         result = SegmentResult("solved", (), True)
         if not applicable(action, operator, state, self._world):
             result = self._segments.solve(state, needed, cancelled=cancelled)
+        if result.status == "cancelled":
+            work.cancelled = True
+            return None
         if result.status != "solved":
             work.problems.append(
                 without_a_way(checkpoint, transition, action, result, self._wording)
@@ -169,11 +181,42 @@ class Compiler:
         return warnings_of(automaton, states, self._mutexes, self._world, self._wording)
 
 
-def _status(work: _Work, automaton: Automaton) -> Status:
+def _no_goals(automaton: Automaton) -> Iterator[Problem]:
+    for checkpoint in automaton.checkpoints.values():
+        for goal in checkpoint.goals:
+            part = _no_goal(goal)
+            if part is None:
+                continue
+            why = "a goal is a fact, or one for all of a kind; ask for one of the facts in it"
+            if isinstance(part, Literal):
+                why = "the world's file says what kind a thing is, and no action changes it"
+            text = f"In {checkpoint.name}: {part} is no goal, as {why}."
+            yield Problem("invalid", text, checkpoint.id)
+    for transition in automaton.transitions.values():
+        for literal in transition.when:
+            if literal.predicate == KIND:
+                text = f"{literal} is no conditional, as what kind a thing is never changes."
+                yield Problem("invalid", text, transition.target, transition.id)
+
+
+def _no_goal(goal: Formula) -> Formula | None:
+    """The first part of a goal that asks for no fact, such as an `or`; None where all of it does."""
+    if isinstance(goal, Literal):
+        return goal if goal.predicate == KIND else None
+    if isinstance(goal, And):
+        return next((p for p in map(_no_goal, goal.parts) if p is not None), None)
+    if isinstance(goal, Imply):
+        return _no_goal(goal.conclusion)
+    if isinstance(goal, Quantified) and goal.quantifier == "forall":
+        return _no_goal(goal.body)
+    return goal
+
+
+def _status(work: _Work) -> Status:
+    if work.cancelled:
+        return "undecided"
     if not work.problems:
-        # A cancelled walk leaves checkpoints without plan and without problem.
-        complete = len(work.segments) == len(automaton.checkpoints) - 1
-        return "ok" if complete else "undecided"
+        return "ok"
     own = [p for p in work.problems if p.cause != "inside"]
     if not work.segments and all(p.cause == "undecided" for p in own):
         return "undecided"

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from polaris_nl.automaton.automaton import Automaton, Checkpoint, Transition
 from polaris_nl.model.domain import Action
 from polaris_nl.model.formula import Literal
-from polaris_nl.model.state import Mutexes, MutexGroup, State
+from polaris_nl.model.state import ANY, Mutexes, MutexGroup, State
 from polaris_nl.model.text import listed, sentence
 from polaris_nl.model.wording import Wording
 from polaris_nl.model.world import World
@@ -62,14 +62,14 @@ class Diagnosis:
         self._wording = wording
         self._repairs = Repairs(world, mutexes, segments, wording)
 
-    def conflict(self, place: Place) -> Problem | None:
+    def conflict(self, place: Place, cancelled: Callable[[], bool]) -> Problem | None:
         """The problem of goals that exclude each other by a rule of the domain, or None."""
         cores: dict[tuple[Literal, ...], MutexGroup | None] = {}
         for a, b in itertools.combinations(place.goals, 2):
             group = self._mutexes.exclusive(a, b) if a.positive and b.positive else None
             if group is not None or a == b.negation:
                 cores[(a, b)] = group
-        return self._conflict(place, cores) if cores else None
+        return self._conflict(place, cores, cancelled) if cores else None
 
     def failure(
         self, place: Place, result: SegmentResult, cancelled: Callable[[], bool]
@@ -80,11 +80,11 @@ class Diagnosis:
         for goal in place.goals:
             alone = self._segments.solve(place.state, (goal,), cancelled=cancelled)
             if alone.status == "unsolvable" and not place.state.holds(goal):
-                return self._unreachable(place, goal)
+                return self._unreachable(place, goal, cancelled)
             if alone.status in ("undecided", "cancelled"):
                 return place.undecided(alone.reason)
         cores = dict.fromkeys(self._cores(place, cancelled))
-        return self._conflict(place, cores or {place.goals: None})
+        return self._conflict(place, cores or {self._one_core(place, cancelled): None}, cancelled)
 
     def _cores(self, place: Place, cancelled: Callable[[], bool]) -> Iterator[tuple[Literal, ...]]:
         """All minimal sets of goals that can't be met together, smallest first, while time is left."""
@@ -105,15 +105,31 @@ class Diagnosis:
                     found.append(frozenset(some))
                     yield some
 
+    def _one_core(self, place: Place, cancelled: Callable[[], bool]) -> tuple[Literal, ...]:
+        """One minimal set, by leaving out goal after goal; larger where the time is over."""
+        deadline = time.monotonic() + CORE_BUDGET_S
+        core = place.goals
+        for goal in place.goals:
+            fewer = tuple(g for g in core if g != goal)
+            left = deadline - time.monotonic()
+            if left <= 0 or cancelled():
+                break
+            if self._segments.solve(place.state, fewer, left, cancelled).status == "unsolvable":
+                core = fewer
+        return core
+
     def _conflict(
-        self, place: Place, cores: dict[tuple[Literal, ...], MutexGroup | None]
+        self,
+        place: Place,
+        cores: dict[tuple[Literal, ...], MutexGroup | None],
+        cancelled: Callable[[], bool],
     ) -> Problem:
         first, group = next(iter(cores.items()))
         facts = listed([self._wording.fact(goal) for goal in first])
         why = self._reason(first, group)
         text = f"{place.checkpoint.name} can't be done: it can't be that {facts} at once{why}."
         repairs = self._repairs.for_conflict(
-            place.automaton, place.checkpoint, place.state, place.goals, first
+            place.automaton, place.checkpoint, place.state, place.goals, first, cancelled
         )
         return Problem(
             "conflict",
@@ -130,16 +146,20 @@ class Diagnosis:
         if any(not pattern.args for pattern in group.patterns):
             return ", as the robot has one hand"
         shared = [arg for arg in core[0].args if arg in core[1].args]
+        if not any(ANY in pattern.args for pattern in group.patterns):
+            return ""  # Not about places: acknowledged and dismissed just exclude each other.
         if shared:
             return f", as {self._wording.entity(shared[0])} is in one place at a time"
         if len(group.patterns) == 1:
             return ", as the robot is in one place at a time"
         return ""
 
-    def _unreachable(self, place: Place, goal: Literal) -> Problem:
+    def _unreachable(self, place: Place, goal: Literal, cancelled: Callable[[], bool]) -> Problem:
         domain = self._world.domain
         fact = self._wording.fact(goal)
-        repairs = self._repairs.for_unreachable(place.automaton, place.transition, goal)
+        repairs = self._repairs.for_unreachable(
+            place.automaton, place.transition, place.state, place.goals, goal, cancelled
+        )
         if domain.achievers(goal):
             lost = [a for a in goal.args if self._lost(a, place.state)]
             if lost:

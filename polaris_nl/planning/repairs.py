@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from polaris_nl.automaton.automaton import Automaton, Checkpoint, Transition
 from polaris_nl.automaton.edits import Edit, InsertCheckpoint, SetConditional, SetGoals, apply_all
@@ -19,6 +19,8 @@ from polaris_nl.planning.segments import SegmentResult, Segments
 
 MOST = 4
 """Ways out that are offered at most."""
+BUDGET_S = 1.0
+"""How long one segment of a way out may take, in seconds."""
 
 
 class Repairs:
@@ -39,25 +41,42 @@ class Repairs:
         state: State,
         goals: tuple[Literal, ...],
         core: Sequence[Literal],
+        cancelled: Callable[[], bool],
     ) -> tuple[Repair, ...]:
         """Splitting the goals into two ordered checkpoints, or dropping one of them."""
         if tuple(checkpoint.goals) != goals:
             return ()  # Quantified goals are split by rewording, not by taking literals out of them.
         found: list[Repair] = []
         for goal in reversed(core):
-            found.extend(self._split(automaton, checkpoint, state, goals, goal))
+            found.extend(self._split(automaton, checkpoint, state, goals, goal, cancelled))
         for goal in reversed(core):
-            found.extend(self._drop(automaton, checkpoint, state, goals, goal))
+            found.extend(self._drop(automaton, checkpoint, state, goals, goal, cancelled))
         return tuple(found[:MOST])
 
     def for_unreachable(
-        self, automaton: Automaton, transition: Transition, goal: Literal
+        self,
+        automaton: Automaton,
+        transition: Transition,
+        state: State,
+        goals: tuple[Literal, ...],
+        goal: Literal,
+        cancelled: Callable[[], bool],
     ) -> tuple[Repair, ...]:
-        """Waiting for a person to bring the goal about."""
-        if not self._world.domain.people_can_change(goal.predicate) or goal in transition.when:
+        """Waiting for a person to bring the goal about, and all else that only people can."""
+        domain = self._world.domain
+        awaited = tuple(
+            g
+            for g in goals
+            if g == goal or not (state.holds(g) or domain.achievers(g) or g in transition.when)
+        )
+        if goal in transition.when or not all(
+            domain.people_can_change(g.predicate) for g in awaited
+        ):
             return ()
-        edit = SetConditional(transition.id, (*transition.when, goal))
-        text = f"wait until {self._wording.event(goal)}"
+        if not self._solvable(state.after_event(awaited, self._mutexes), goals, cancelled):
+            return ()
+        edit = SetConditional(transition.id, (*transition.when, *awaited))
+        text = f"wait until {listed([self._wording.event(g) for g in awaited])}"
         return self._sound(automaton, Repair(text, (edit,)))
 
     def _split(
@@ -67,12 +86,14 @@ class Repairs:
         state: State,
         goals: tuple[Literal, ...],
         last: Literal,
+        cancelled: Callable[[], bool],
     ) -> tuple[Repair, ...]:
         first = tuple(g for g in goals if g != last)
-        result = self._segments.solve(state, first)
+        result = self._segments.solve(state, first, BUDGET_S, cancelled)
         if result.status != "solved":
             return ()
-        if self._segments.solve(self._after(state, result), (last,)).status != "solved":
+        between = self._after(state, result)
+        if not self._solvable(between, (last,), cancelled):
             return ()
         incoming = automaton.incoming(checkpoint.id)
         if incoming is None:
@@ -94,12 +115,18 @@ class Repairs:
         state: State,
         goals: tuple[Literal, ...],
         dropped: Literal,
+        cancelled: Callable[[], bool],
     ) -> tuple[Repair, ...]:
         kept = tuple(g for g in goals if g != dropped)
-        if not kept or self._segments.solve(state, kept).status != "solved":
+        if not kept or not self._solvable(state, kept, cancelled):
             return ()
         text = f"leave out that {self._wording.fact(dropped)}"
         return self._sound(automaton, Repair(text, (SetGoals(checkpoint.id, kept),)))
+
+    def _solvable(
+        self, state: State, goals: tuple[Literal, ...], cancelled: Callable[[], bool]
+    ) -> bool:
+        return self._segments.solve(state, goals, BUDGET_S, cancelled).status == "solved"
 
     def _sound(self, automaton: Automaton, repair: Repair) -> tuple[Repair, ...]:
         """The repair, unless its edits don't fit or break the program's shape."""

@@ -6,7 +6,7 @@ A missing plan is a value here, never an error (DESIGN section 5 point 4).
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal as OneOf
 
 from polaris_nl.automaton.edits import Edit
@@ -121,10 +121,11 @@ class BranchingPlan:
 
     status: Status
     segments: Mapping[str, Segment]
-    root: PlanNode | None
+    # Follows from the rest, and is too deep for Python's own comparing and printing.
+    root: PlanNode | None = field(compare=False, repr=False)
     problems: tuple[Problem, ...] = ()
     warnings: tuple[Warning, ...] = ()
-    ms: float = 0.0
+    ms: float = field(default=0.0, compare=False)
 
     @property
     def omitted(self) -> tuple[str, ...]:

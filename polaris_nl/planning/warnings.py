@@ -31,7 +31,7 @@ def warnings_of(
         outgoing = automaton.outgoing(checkpoint)
         for transition in outgoing:
             found.extend(_alone(automaton, transition, outgoing, state, mutexes, world, wording))
-        found.extend(_overlaps(automaton, outgoing, wording))
+        found.extend(_overlaps(automaton, outgoing, mutexes, wording))
     return tuple(found)
 
 
@@ -48,11 +48,14 @@ def _alone(
         return
     name = automaton.checkpoints[transition.target].name
     words = _words(transition.when, wording)
-    for a, b in itertools.combinations(transition.when, 2):
-        if a == b.negation or (a.positive and b.positive and mutexes.exclusive(a, b)):
-            text = f"{name} may never come: {wording.event(a)} and {wording.event(b)} exclude each other"
-            yield Warning(sentence(text), transition.id)
-            return
+    exclusive = _exclude(transition.when, mutexes)
+    if exclusive is not None:
+        a, b = exclusive
+        text = (
+            f"{name} may never come: {wording.event(a)} and {wording.event(b)} exclude each other"
+        )
+        yield Warning(sentence(text), transition.id)
+        return
     static = [
         x
         for x in transition.when
@@ -75,15 +78,23 @@ def _alone(
 
 
 def _overlaps(
-    automaton: Automaton, outgoing: tuple[Transition, ...], wording: Wording
+    automaton: Automaton, outgoing: tuple[Transition, ...], mutexes: Mutexes, wording: Wording
 ) -> Iterator[Warning]:
     labelled = [t for t in outgoing if t.when]
     for a, b in itertools.combinations(labelled, 2):
-        if a.conditional & b.conditional:
+        if a.conditional & b.conditional and not _exclude(a.when + b.when, mutexes):
             one, two = (automaton.checkpoints[t.target].name for t in (a, b))
             shared = _words(tuple(sorted(a.conditional & b.conditional)), wording)
             text = f"{one} and {two} may both be right when {shared}; the robot takes the first that holds"
             yield Warning(sentence(text), b.id)
+
+
+def _exclude(literals: tuple[Literal, ...], mutexes: Mutexes) -> tuple[Literal, Literal] | None:
+    """The first two literals that can't hold together, or None."""
+    for a, b in itertools.combinations(literals, 2):
+        if a == b.negation or (a.positive and b.positive and mutexes.exclusive(a, b)):
+            return a, b
+    return None
 
 
 def _words(when: tuple[Literal, ...], wording: Wording) -> str:

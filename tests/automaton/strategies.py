@@ -36,11 +36,15 @@ def edits(draw: st.DrawFn, automaton: Automaton) -> Edit:
     """An edit that mostly fits an automaton."""
     checkpoints = st.sampled_from(sorted(automaton.checkpoints))
     new = Checkpoint(
-        automaton.fresh_checkpoint_id(), automaton.fresh_name(draw(st.sampled_from(["a", "b"]))), draw(GOALS)
+        automaton.fresh_checkpoint_id(),
+        automaton.fresh_name(draw(st.sampled_from(["a", "b"]))),
+        draw(GOALS),
     )
     arrow = automaton.fresh_transition_id()
     choices: list[st.SearchStrategy[Edit]] = [
-        st.builds(lambda c, w: AddCheckpoint(new, Transition(arrow, c, new.id, w)), checkpoints, GOALS),
+        st.builds(
+            lambda c, w: AddCheckpoint(new, Transition(arrow, c, new.id, w)), checkpoints, GOALS
+        ),
         st.builds(RemoveCheckpoint, checkpoints, st.booleans()),
         st.builds(RenameCheckpoint, checkpoints, st.sampled_from(["a", "z", " "])),
         st.builds(SetGoals, checkpoints, GOALS),

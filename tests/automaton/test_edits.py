@@ -60,7 +60,11 @@ def test_inserting_keeps_the_conditional_in_front(paper: Automaton) -> None:
 
 def test_removing_one_moves_what_follows_up_with_both_conditionals(paper: Automaton) -> None:
     changed = apply(paper, RemoveCheckpoint("c2"))
-    assert shape(changed) == {("start", "alerted", 0), ("alerted", "home", 1), ("alerted", "cancelled", 1)}
+    assert shape(changed) == {
+        ("start", "alerted", 0),
+        ("alerted", "home", 1),
+        ("alerted", "cancelled", 1),
+    }
 
 
 def test_removing_a_subtree_removes_all_of_it(paper: Automaton) -> None:
@@ -104,8 +108,14 @@ def test_names_are_made_unique(paper: Automaton) -> None:
         (add(2, "again", 0), "a checkpoint c2 already"),
         (add(5, "home", 0), "is called home already"),
         (add(5, "tea", 9), "no checkpoint c9"),
-        (AddCheckpoint(Checkpoint("c5", "x"), Transition("t5", "c0", "c1")), "has to lead to the new"),
-        (AddCheckpoint(Checkpoint("c5", "x"), Transition("t1", "c0", "c5")), "a transition t1 already"),
+        (
+            AddCheckpoint(Checkpoint("c5", "x"), Transition("t5", "c0", "c1")),
+            "has to lead to the new",
+        ),
+        (
+            AddCheckpoint(Checkpoint("c5", "x"), Transition("t1", "c0", "c5")),
+            "a transition t1 already",
+        ),
         (InsertCheckpoint(Checkpoint("c5", "x"), "t9", "t5"), "no transition t9"),
         (RemoveCheckpoint(START), "start can't be removed"),
         (RenameCheckpoint("c1", "  "), "needs a name"),
@@ -120,7 +130,9 @@ def test_names_are_made_unique(paper: Automaton) -> None:
         (Disconnect("t9"), "no transition t9"),
     ],
 )
-def test_an_edit_that_does_not_fit_is_refused_by_name(paper: Automaton, edit: Edit, reason: str) -> None:
+def test_an_edit_that_does_not_fit_is_refused_by_name(
+    paper: Automaton, edit: Edit, reason: str
+) -> None:
     with pytest.raises(EditError, match=reason):
         apply(paper, edit)
 

@@ -10,7 +10,12 @@ from typing import Any
 import pytest
 
 from polaris_nl.automaton.automaton import Automaton, Checkpoint, Transition
-from polaris_nl.automaton.program import Program, program_json, program_of, read_program, write_program
+from polaris_nl.automaton.program import (
+    program_json,
+    program_of,
+    read_program,
+    write_program,
+)
 from polaris_nl.automaton.validation import validate
 from polaris_nl.model.errors import FileError, FormatError
 from polaris_nl.model.formula import parse_formula, parse_literal
@@ -28,7 +33,13 @@ EXAMPLE: dict[str, Any] = {
     ],
     "transitions": [
         {"id": "t1", "from": "c0", "to": "c1", "when": []},
-        {"id": "t2", "from": "c1", "to": "c2", "when": ["(acknowledged lunchtime)"], "on": "success"},
+        {
+            "id": "t2",
+            "from": "c1",
+            "to": "c2",
+            "when": ["(acknowledged lunchtime)"],
+            "on": "success",
+        },
     ],
 }
 
@@ -132,7 +143,11 @@ HOME = (parse_literal("(robot-at home)"),)
     [
         (automaton([Checkpoint("c0", "start", HOME)], []), "structure", "The start has goals"),
         (automaton([start(), Checkpoint("c1", "x")], []), "structure", "Nothing leads to x"),
-        (automaton([start()], [Transition("t1", "c0", "c9")]), "structure", "c9, which isn't there"),
+        (
+            automaton([start()], [Transition("t1", "c0", "c9")]),
+            "structure",
+            "c9, which isn't there",
+        ),
         (
             automaton(
                 [start(), Checkpoint("c1", "x")],
@@ -187,6 +202,8 @@ HOME = (parse_literal("(robot-at home)"),)
         ),
     ],
 )
-def test_each_fault_is_told_with_its_cause(care_home: World, broken: Automaton, cause: str, text: str) -> None:
+def test_each_fault_is_told_with_its_cause(
+    care_home: World, broken: Automaton, cause: str, text: str
+) -> None:
     faults = validate(broken, care_home)
     assert (cause, True) in {(f.cause, text in f.text) for f in faults}

@@ -33,9 +33,21 @@ from polaris_nl.model.errors import LogError
 
 EXAMPLE: list[Event] = [
     RunStarted(time=100.0, text="The run starts.", robot="world", program={"schema": "x"}),
-    GoalSent(time=101.0, text="I go home.", goal=1, action="(move hall home)", literals=["(robot-at home)"], checkpoint="c1"),
+    GoalSent(
+        time=101.0,
+        text="I go home.",
+        goal=1,
+        action="(move hall home)",
+        literals=["(robot-at home)"],
+        checkpoint="c1",
+    ),
     CheckpointReached(time=104.0, text="Home is reached.", checkpoint="c1", name="home"),
-    Halted(time=105.5, text="I halt: ünïcode \U0001f600 and \x07 control", reason="so", expected=["(a)"]),
+    Halted(
+        time=105.5,
+        text="I halt: ünïcode \U0001f600 and \x07 control",
+        reason="so",
+        expected=["(a)"],
+    ),
     RunEnded(time=106.0, text="Over.", outcome="halted", reason="so", checkpoints=["home"]),
 ]
 

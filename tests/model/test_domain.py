@@ -58,7 +58,12 @@ def test_costs_are_passed_over() -> None:
         ("(define", "(problem", 1, "doesn't start with"),
         ("(robot-at ?a)\n", "(robot-on ?a)\n", 17, "no predicate robot-on. Did you mean robot-at?"),
         ("(located ?s ?r)", "(located ?s)", 22, "takes 2 terms"),
-        ("(called ?p - person)", "(called ?p - persn)", None, "undeclared type persn. Did you mean person"),
+        (
+            "(called ?p - person)",
+            "(called ?p - persn)",
+            None,
+            "undeclared type persn. Did you mean person",
+        ),
         ("; EXOGENOUS: at", "; EXOGENOUS: att", 14, "no predicate att"),
         ("(:action go", "(:action pick", 20, "defined twice"),
         (":parameters (?a ?b - region)", ":parameters", 15, "An operator is"),

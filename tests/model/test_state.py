@@ -8,7 +8,7 @@ from polaris_nl.model.domain import Action
 from polaris_nl.model.errors import FormatError
 from polaris_nl.model.evaluate import after, applicable, effects, ground_goals, holds
 from polaris_nl.model.formula import Literal, parse_formula, parse_literal
-from polaris_nl.model.state import MutexGroup, Mutexes, State
+from polaris_nl.model.state import Mutexes, MutexGroup, State
 from polaris_nl.model.world import World
 
 
@@ -37,9 +37,17 @@ MUTEXES = Mutexes(
         (["(at cup table)"], ["(at cup rack)"], ["(at cup rack)"]),
         (["(holding cup)"], ["(at cup rack)"], ["(at cup rack)", "(hand-empty)"]),
         (["(hand-empty)", "(at cup table)"], ["(holding cup)"], ["(holding cup)"]),
-        (["(at cup table)", "(at plate table)"], ["(in cup box)"], ["(in cup box)", "(at plate table)"]),
+        (
+            ["(at cup table)", "(at plate table)"],
+            ["(in cup box)"],
+            ["(in cup box)", "(at plate table)"],
+        ),
         (["(acknowledged lunch)"], ["(dismissed lunch)"], ["(dismissed lunch)"]),
-        (["(acknowledged lunch)"], ["(dismissed tea)"], ["(acknowledged lunch)", "(dismissed tea)"]),
+        (
+            ["(acknowledged lunch)"],
+            ["(dismissed tea)"],
+            ["(acknowledged lunch)", "(dismissed tea)"],
+        ),
         (["(person-in ann hall)"], ["(person-in ann room)"], ["(person-in ann room)"]),
         (["(holding cup)"], ["(not (holding cup))"], ["(hand-empty)"]),
         (["(open box)"], ["(not (open box))"], []),
@@ -47,7 +55,9 @@ MUTEXES = Mutexes(
         ([], [], []),
     ],
 )
-def test_an_event_displaces_what_it_excludes(before: list[str], event: list[str], expected: list[str]) -> None:
+def test_an_event_displaces_what_it_excludes(
+    before: list[str], event: list[str], expected: list[str]
+) -> None:
     assert state(*before).after_event(literals(*event), MUTEXES) == state(*expected)
 
 
@@ -78,7 +88,9 @@ def test_actions_change_states_as_pddl_says(flat: World) -> None:
 
 def test_an_effect_that_is_deleted_and_added_stays(flat: World) -> None:
     stay = Action("go", ("kitchen", "kitchen"))
-    assert effects(stay, flat.domain.operators["go"], flat.initial, flat) == literals("(robot-at kitchen)")
+    assert effects(stay, flat.domain.operators["go"], flat.initial, flat) == literals(
+        "(robot-at kitchen)"
+    )
 
 
 @pytest.mark.parametrize(
@@ -97,7 +109,9 @@ def test_formulas_are_evaluated_in_the_closed_world(flat: World, text: str, true
 
 
 def test_for_all_expands_over_the_entities_that_meet_its_condition(flat: World) -> None:
-    goal = parse_formula("(forall (?d - object) (imply (and (kind ?d dish) (at ?d shelf)) (holding ?d)))")
+    goal = parse_formula(
+        "(forall (?d - object) (imply (and (kind ?d dish) (at ?d shelf)) (holding ?d)))"
+    )
     assert ground_goals((goal,), flat.initial, flat) == literals("(holding red-cup)")
     assert ground_goals((goal,), state(), flat) == ()
 

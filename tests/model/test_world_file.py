@@ -19,7 +19,12 @@ def test_a_world_is_read_whole(flat: World) -> None:
     assert flat.domain.name == "errands"
     assert list(flat.entities) == ["kitchen", "shelf", "red-cup", "plate", "ann"]
     cup = flat.entities["red-cup"]
-    assert (cup.spoken, cup.noun, cup.adjectives, cup.synonyms) == ("red cup", "cup", ("red",), ("mug",))
+    assert (cup.spoken, cup.noun, cup.adjectives, cup.synonyms) == (
+        "red cup",
+        "cup",
+        ("red",),
+        ("mug",),
+    )
     assert flat.entities["kitchen"].area == ((0.0, 0.0), (4.0, 3.0))
     assert flat.user is flat.entities["ann"]
     assert parse_literal("(at red-cup shelf)") in flat.initial
@@ -29,7 +34,9 @@ def test_a_world_is_read_whole(flat: World) -> None:
 
 def test_places_are_found_through_surfaces_and_the_hand(flat: World) -> None:
     assert flat.place_of("red-cup", flat.initial) == "kitchen"
-    held = flat.initial.change([parse_literal("(at red-cup shelf)")], [parse_literal("(holding red-cup)")])
+    held = flat.initial.change(
+        [parse_literal("(at red-cup shelf)")], [parse_literal("(holding red-cup)")]
+    )
     assert flat.place_of("red-cup", held) == "kitchen"
     assert flat.place_of("plate", flat.initial) is None
 
@@ -44,10 +51,25 @@ def test_places_are_found_through_surfaces_and_the_hand(flat: World) -> None:
         ("{name: plate, type", "{name: shelf, type", 8, "another shelf on line 6"),
         ("{name: plate, type: object, ", "{name: plate, ", 8, "has no type"),
         ("{name: plate, type", "{name: The Plate, type", 8, "no entity name"),
-        ("kinds: [dish]}\n  - {name: ann", "kins: [dish]}\n  - {name: ann", 8, "Did you mean kinds?"),
+        (
+            "kinds: [dish]}\n  - {name: ann",
+            "kins: [dish]}\n  - {name: ann",
+            8,
+            "Did you mean kinds?",
+        ),
         ("kinds: [dish]}\n  - {name: ann", "owner: anne}\n  - {name: ann", 8, "Did you mean ann?"),
-        ("(at red-cup shelf)", "(at red-cop shelf)", 10, "nothing called red-cop. Did you mean red-cup?"),
-        ("(at red-cup shelf)", "(at shelf red-cup)", 10, "shelf is a surface, but an object is needed"),
+        (
+            "(at red-cup shelf)",
+            "(at red-cop shelf)",
+            10,
+            "nothing called red-cop. Did you mean red-cup?",
+        ),
+        (
+            "(at red-cup shelf)",
+            "(at shelf red-cup)",
+            10,
+            "shelf is a surface, but an object is needed",
+        ),
         ("(at red-cup shelf)", "(at red-cup)", 10, "has 1 arguments, but takes 2"),
         ("(at red-cup shelf)", "(not (at red-cup shelf))", 10, "needn't be said"),
         ("(robot-at kitchen)", "(robot-in kitchen)", 10, "Did you mean robot-at?"),

@@ -1,0 +1,1 @@
+"""Speech: audio to utterances. Vosk and the sound libraries are imported only here, and only when needed."""
