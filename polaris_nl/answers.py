@@ -1,5 +1,4 @@
-"""The session's answers in words: what a change did to the plan, what a run will do, and questions
-by the user.
+"""The session's answers in words: what a change did, what a run will do, and questions by the user.
 
 Pure functions of the program, the plan and the words of the world. Feedback is proactive (DESIGN
 section 1): a change is answered with its echo and with what it did to the plan, problems first.
@@ -9,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from polaris_nl.automaton.automaton import START, Automaton
+from polaris_nl.automaton.automaton import Automaton
 from polaris_nl.language.interpretation import Query
 from polaris_nl.model.evaluate import holds
 from polaris_nl.model.formula import Literal
@@ -17,12 +16,11 @@ from polaris_nl.model.state import State
 from polaris_nl.model.text import listed, sentence
 from polaris_nl.model.wording import Wording
 from polaris_nl.model.world import World
-from polaris_nl.planning.result import BranchingPlan, Segment
+from polaris_nl.planning.result import BranchingPlan
+from polaris_nl.render.explanation import branches_in_words, segment_in_words, steps_in_words
 
 NO_PLAN = "There is no plan yet: say what the robot should achieve."
 STILL_PLANNING = "I'm still working out the plan."
-SPOKEN_ACTIONS = 8
-"""Actions of a branch that are said one by one; more are summed up."""
 
 
 def change_in_words(
@@ -120,7 +118,7 @@ def _about_plan(
             f"The program says nothing about what happens when {events}. Tell me what to do then."
         )
     if start is None:
-        return " ".join(_branch_from(START, automaton, plan, wording)) or NO_PLAN
+        return " ".join(branches_in_words(automaton, plan, wording)) or NO_PLAN
     transition = automaton.transitions[start]
     target = automaton.checkpoints[transition.target]
     segment = plan.segments.get(target.id)
@@ -129,9 +127,10 @@ def _about_plan(
         return problem.text if problem else NO_PLAN
     if query.kind == "why":
         goals = listed([wording.fact(goal) for goal in segment.goals]) or "it comes next"
-        return sentence(f"to {_steps(segment, wording)} is how I make sure that {goals}")
-    rest = _branch_from(target.id, automaton, plan, wording)
-    return " ".join([_segment(segment, wording), *rest])
+        return sentence(f"to {steps_in_words(segment, wording)} is how I make sure that {goals}")
+    lead = f"once {listed([wording.event(x) for x in segment.when])}, " if segment.when else ""
+    rest = branches_in_words(automaton, plan, wording, target.id)
+    return " ".join([segment_in_words(segment, wording, lead), *rest])
 
 
 def _asked_transition(query: Query, automaton: Automaton) -> str | None:
@@ -141,41 +140,6 @@ def _asked_transition(query: Query, automaton: Automaton) -> str | None:
         return next(found, None)
     incoming = automaton.incoming(query.checkpoint) if query.checkpoint else None
     return incoming.id if incoming else None
-
-
-def _branch_from(
-    checkpoint: str, automaton: Automaton, plan: BranchingPlan, wording: Wording
-) -> list[str]:
-    """A sentence a segment, followed until the ways part; then a sentence a way."""
-    said: list[str] = []
-    ways = [
-        plan.segments[t.target] for t in automaton.outgoing(checkpoint) if t.target in plan.segments
-    ]
-    while len(ways) == 1:
-        said.append(_segment(ways[0], wording))
-        checkpoint = ways[0].target
-        ways = [
-            plan.segments[t.target]
-            for t in automaton.outgoing(checkpoint)
-            if t.target in plan.segments
-        ]
-    said.extend(_segment(way, wording, otherwise=len(ways) > 1) for way in ways)
-    return said
-
-
-def _segment(segment: Segment, wording: Wording, otherwise: bool = False) -> str:
-    steps = f"I {_steps(segment, wording)}" if segment.actions else "there is nothing to do"
-    if segment.when:
-        return sentence(f"once {listed([wording.event(x) for x in segment.when])}, {steps}")
-    return sentence(f"otherwise {steps}" if otherwise else steps)
-
-
-def _steps(segment: Segment, wording: Wording) -> str:
-    actions = [wording.action(a) for a in segment.actions]
-    if len(actions) > SPOKEN_ACTIONS:
-        middle = len(actions) - SPOKEN_ACTIONS + 1
-        actions = [*actions[: SPOKEN_ACTIONS - 2], f"do {middle} more things", actions[-1]]
-    return listed(actions) or "do nothing"
 
 
 def _problems(automaton: Automaton, plan: BranchingPlan | None) -> str:

@@ -1,5 +1,4 @@
-"""The composition root: an utterance or an edit comes in, a new snapshot of program and plan goes
-out.
+"""The composition root: an utterance or an edit comes in, a new snapshot of program and plan goes out.
 
 The command line and the terminal application are two faces of one `Session`. The program changes in
 the caller's thread, at once; planning happens in one thread of the session's own, newest revision
@@ -11,19 +10,20 @@ from __future__ import annotations
 
 import threading
 import time
+from collections import deque
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from polaris_nl.answers import answer_query, change_in_words, run_in_words
+from polaris_nl.answers import STILL_PLANNING, answer_query, change_in_words, run_in_words
 from polaris_nl.automaton.automaton import Automaton
 from polaris_nl.automaton.edit_json import edit_json
 from polaris_nl.automaton.edits import Edit, ReplaceProgram
 from polaris_nl.automaton.history import History
 from polaris_nl.automaton.program import Program, program_json, read_program, write_program
-from polaris_nl.execution.events import Edited, Event, Failed, Planned, Understood
+from polaris_nl.execution.events import Edited, Event, Failed, Heard, Planned, Understood
 from polaris_nl.language.interpretation import Command, Interpretation, Query, Refusal
 from polaris_nl.model.errors import FileError, PolarisError
 from polaris_nl.model.wording import Wording
@@ -33,7 +33,8 @@ from polaris_nl.replanning import Replanner
 from polaris_nl.snapshot import Answer, Planning, Snapshot, answer_json
 
 if TYPE_CHECKING:
-    from polaris_nl.language.understanding import Dialogue, Understanding
+    from polaris_nl.language.dialogue import Dialogue
+    from polaris_nl.language.understanding import Understanding
     from polaris_nl.planning.planner import Planner
 
 PLAN_WAIT_S = 10.0
@@ -71,6 +72,8 @@ class Session:
         self._last_say = ""
         self._snapshot = Snapshot(automaton=self._history.present)
         self._subscribers: list[Subscriber] = []
+        self._untold: deque[Snapshot] = deque()
+        self._telling = False
         self._changed = threading.Condition()
         self._replanner = Replanner(
             lambda automaton, stale: self.planner.compile(automaton, stale), self._publish_plan
@@ -112,7 +115,7 @@ class Session:
         return Program(automaton, self.world.domain.name, self.world.name)
 
     def subscribe(self, subscriber: Subscriber) -> Callable[[], None]:
-        """Calls back with every new snapshot, from whichever thread made it.
+        """Calls back with every new snapshot in order, from the caller's or the planning thread.
 
         Returns:
             A function that ends the subscription.
@@ -120,14 +123,16 @@ class Session:
         self._subscribers.append(subscriber)
         return lambda: self._subscribers.remove(subscriber)
 
-    def say(self, utterance: str, wait_s: float = PLAN_WAIT_S) -> Answer:
+    def say(self, utterance: str, wait_s: float = PLAN_WAIT_S, source: str = "typed") -> Answer:
         """Interprets an utterance, carries it out, and answers.
 
         Args:
             utterance: what the user said or typed.
             wait_s: how long to wait for the plan, in seconds; 0 answers with the plan pending.
+            source: where it came from, for the log: `typed`, `voice`, a recording's name.
         """
         started = time.perf_counter()
+        self._sink(Heard(time=self._now(), utterance=utterance, source=source))
         interpretation, dialogue = self._interpret(utterance)
         self._dialogue = dialogue
         failure, confirmed = "", False
@@ -147,6 +152,17 @@ class Session:
         self._report_understood(answer)
         return answer
 
+    def parses(self, utterance: str) -> bool:
+        """Whether an utterance would be understood now: anything but a refusal. Changes nothing."""
+        return self.understanding.parses(utterance, self._snapshot.automaton, self._dialogue)
+
+    def begin_again(self, automaton: Automaton) -> None:
+        """Goes back to a program, as if nothing had been said: for utterances that are independent."""
+        self._dialogue = None
+        self._run_echoed = False
+        if automaton != self._snapshot.automaton:
+            self._do((ReplaceProgram(automaton),), "begin again")
+
     def edit(self, edits: Iterable[Edit], label: str) -> str:
         """Changes the program as one step that can be undone.
 
@@ -160,11 +176,11 @@ class Session:
 
     def undo(self) -> str | None:
         """Takes the last step back and returns its label, or None where there is nothing to undo."""
-        return self._step(self._history.undo())
+        return self._step(self._history.undo())[0]
 
     def redo(self) -> str | None:
         """Makes the last undone step again and returns its label, or None where there is nothing to redo."""
-        return self._step(self._history.redo())
+        return self._step(self._history.redo())[0]
 
     def wait(self, seconds: float = PLAN_WAIT_S) -> Snapshot:
         """Waits until the present revision is planned, or for some seconds; returns the snapshot then."""
@@ -199,10 +215,12 @@ class Session:
         """Does what a command asks of the session; what it asks of the face is left to the face."""
         match interpretation.command:
             case "undo" | "redo" as command:
-                label = self.undo() if command == "undo" else self.redo()
+                history = self._history
+                there = history.undo() if command == "undo" else history.redo()
+                label, failure = self._step(there)
                 done = "Undone" if command == "undo" else "Done again"
                 said = f"There is nothing to {command}." if label is None else f"{done}: {label}"
-                return replace(interpretation, say=said), ""
+                return replace(interpretation, say=said), failure
             case "new":
                 if len(self._snapshot.automaton.checkpoints) == 1:
                     return replace(interpretation, say="The program is empty already."), ""
@@ -257,6 +275,9 @@ class Session:
             )
         match interpretation.command:
             case "run":
+                if after.planning != "planned":  # Nobody says yes to an older plan.
+                    self._run_echoed = False
+                    return f"I can't run it yet. {after.failure or STILL_PLANNING}"
                 if after.plan is None or not after.plan.segments:
                     self._run_echoed = False
                 back = self.understanding.read_back(after.automaton)
@@ -289,15 +310,15 @@ class Session:
         self._publish_program(label, edits)
         return self._save() if save else ""
 
-    def _step(self, history: History | None) -> str | None:
+    def _step(self, history: History | None) -> tuple[str | None, str]:
+        """Goes to a step of the history; returns its label, and why it could not be saved, or ""."""
         if history is None:
-            return None
+            return None, ""
         undone = len(history.past) < len(self._history.past)
         label = self._history.past[-1].label if undone else history.past[-1].label
         self._history = history
         self._publish_program(f"{'undo' if undone else 'redo'}: {label}", ())
-        self._save()
-        return label
+        return label, self._save()
 
     def _save(self) -> str:
         if self.path is None:
@@ -320,6 +341,7 @@ class Session:
                 redoable=tuple(step.label for step, _ in self._history.future),
             )
             snapshot = self._snapshot
+            self._run_echoed = False  # The yes would be to another program than the one read out.
         self._sink(
             Edited(
                 time=self._now(),
@@ -330,16 +352,32 @@ class Session:
                 program=program_json(self.program),
             )
         )
-        self._tell(snapshot)
+        self._tell()
         self._replanner.request(snapshot.revision, snapshot.automaton)
 
     def _set(self, **changes: Any) -> None:
         self._snapshot = replace(self._snapshot, **changes)
+        self._untold.append(self._snapshot)
         self._changed.notify_all()
 
-    def _tell(self, snapshot: Snapshot) -> None:
-        for subscriber in tuple(self._subscribers):
-            subscriber(snapshot)
+    def _tell(self) -> None:
+        """Tells the snapshots in the order they were made: one thread at a time, holding no lock."""
+        with self._changed:
+            if self._telling:
+                return  # Whoever is telling now goes on with them.
+            self._telling = True
+        while True:
+            with self._changed:
+                if not self._untold:
+                    self._telling = False
+                    return
+                snapshot = self._untold.popleft()
+            try:
+                for subscriber in tuple(self._subscribers):
+                    subscriber(snapshot)
+            except BaseException:
+                self._telling = False
+                raise
 
     # Plans, in the planning thread
 
@@ -351,7 +389,7 @@ class Session:
             self._set(plan=plan, planning=state, failure=failure)
             snapshot = self._snapshot
         self._report_planned(snapshot)
-        self._tell(snapshot)
+        self._tell()
 
     # Events
 

@@ -39,7 +39,7 @@ from polaris_nl.execution.events import (
 from polaris_nl.execution.expectations import needed_places, perceived_instead
 from polaris_nl.execution.settings import RunSettings
 from polaris_nl.model.domain import Action
-from polaris_nl.model.evaluate import effects
+from polaris_nl.model.evaluate import after, effects
 from polaris_nl.model.formula import Literal
 from polaris_nl.model.text import listed, sentence
 from polaris_nl.model.wording import Wording
@@ -143,6 +143,10 @@ class _Step:
         """Whether a conditional is perceived, or a person said that it came true."""
         return all(x in self.state.told or self.sees(x) for x in transition.when)
 
+    def denies(self, transition: Transition) -> bool:
+        """Whether a conditional is known not to hold; what is unknown just now is not false."""
+        return any(x not in self.state.told and self.sees(x.negation) for x in transition.when)
+
     @property
     def elapsed(self) -> float:
         """Seconds in the present phase."""
@@ -194,6 +198,8 @@ def _take_report(work: _Step, report: Report) -> None:
     elif report.kind == "rejected":
         _halt(work, f"the robot refused to {_action_words(work)}{_because(report.reason)}")
     elif report.kind == "succeeded":
+        if work.state.phase == "sending":
+            work.go("pursuing")  # The acceptance was lost on the way.
         work.state = replace(work.state, reported_at=work.now)
     elif report.kind in ("failed", "cancelled"):
         if work.state.retries >= work.run.settings.retries:
@@ -213,6 +219,7 @@ def _take_command(work: _Step, command: HumanCommand) -> None:
         _end(work, "stopped", "You stopped the run.")
     elif command.kind == "pause" and work.state.phase != "paused":
         _cancel(work)
+        work.commands.append(StopRobot())  # A robot that ignores the cancelling stands still, too.
         work.go("paused", "paused by a person")
     elif command.kind == "resume" and work.state.phase == "paused":
         work.go("idle", "resumed by a person")
@@ -250,7 +257,7 @@ def _decide(work: _Step) -> None:
             work.state = replace(work.state, held=holding.id, holding_since=work.now)
         if work.now - (work.state.holding_since or 0.0) >= work.run.settings.condition_s:
             _take(work, holding, "its condition is perceived")
-    elif otherwise is not None:
+    elif otherwise is not None and all(work.denies(t) for t in labelled):
         reason = "no condition of its siblings is perceived" if labelled else ""
         _take(work, otherwise, reason)
     elif work.state.phase != "waiting":
@@ -275,9 +282,9 @@ def _start_waiting(work: _Step, labelled: Sequence[Transition]) -> None:
 def _waiting(work: _Step) -> None:
     limit = work.run.settings.wait_s
     if limit is not None and work.elapsed > limit:
-        outgoing = work.run.automaton.outgoing(work.state.checkpoint)
-        words = [listed([work.run.wording.event(x) for x in t.when]) for t in outgoing]
-        expected = tuple(x for t in outgoing for x in t.when)
+        labelled = [t for t in work.run.automaton.outgoing(work.state.checkpoint) if t.when]
+        words = [listed([work.run.wording.event(x) for x in t.when]) for t in labelled]
+        expected = tuple(x for t in labelled for x in t.when)
         _halt(
             work,
             f"I waited {limit:g} seconds, but it didn't happen that {listed(words, 'or')}",
@@ -316,7 +323,11 @@ def _next_action(work: _Step, action: Action) -> None:
     perceived = work.inputs.observation
     literals = effects(action, operator, perceived.state, work.run.world)
     if literals and all(work.sees(x) for x in literals):
-        _confirmed(work, action, 0.0, "it is so already")
+        # Here, too, a flicker decides nothing.
+        if work.state.holding_since is None:
+            work.state = replace(work.state, holding_since=work.now)
+        elif work.now - work.state.holding_since >= work.run.settings.confirm_s:
+            _confirmed(work, action, 0.0, "it is so already")
         return
     missing = tuple(x for x in needed_places(action, operator) if not work.sees(x))
     if missing:
@@ -354,20 +365,19 @@ def _sending(work: _Step) -> None:
 def _pursuing(work: _Step) -> None:
     if all(work.sees(x) for x in work.state.goal_literals):
         work.go("confirming")
-        work.state = replace(work.state, holding_since=work.now)
         return
     reported = work.state.reported_at
     if reported is not None and work.now - reported > work.run.settings.report_s:
         _cancel(work)
         _deviate(work, tuple(x for x in work.state.goal_literals if not work.sees(x)))
-    elif work.elapsed > work.run.settings.goal_s:
+    elif work.now - work.state.sent_at > work.run.settings.goal_s:
         _halt(work, f"the robot took too long to {_action_words(work)}", work.state.goal_literals)
 
 
 def _confirming(work: _Step) -> None:
     if not all(work.sees(x) for x in work.state.goal_literals):
         work.go("pursuing", "it doesn't hold any more")
-    elif work.now - (work.state.holding_since or work.now) >= work.run.settings.confirm_s:
+    elif work.elapsed >= work.run.settings.confirm_s:
         segment = work.run.plan.segments[work.state.segment]
         action = segment.actions[work.state.done_actions]
         said = "succeeded" if work.state.reported_at is not None else ""
@@ -388,6 +398,10 @@ def _confirmed(work: _Step, action: Action, seconds: float, reported: str) -> No
 
 
 def _reach(work: _Step) -> None:
+    missing = tuple(x for x in _kept_goals(work) if not work.sees(x))
+    if missing:
+        _deviate(work, missing)
+        return
     checkpoint = work.run.automaton.checkpoints[work.state.segment]
     text = sentence(f"{checkpoint.name} is reached")
     work.events.append(
@@ -396,6 +410,22 @@ def _reach(work: _Step) -> None:
     work.go(
         "idle", checkpoint=checkpoint.id, segment="", reached=(*work.state.reached, checkpoint.id)
     )
+
+
+def _kept_goals(work: _Step) -> tuple[Literal, ...]:
+    """The segment's goals that held before, so that no action brings them about; they are to hold still.
+
+    The others were perceived when their actions were done, and may have served since: a dish may be
+    washed before the next one is brought.
+    """
+    segment = work.run.plan.segments[work.state.segment]
+    brought: set[Literal] = set()
+    state = segment.before
+    for action in segment.actions:
+        operator = work.run.world.domain.operators[action.operator]
+        brought.update(effects(action, operator, state, work.run.world))
+        state = after(action, operator, state, work.run.world)
+    return tuple(x for x in segment.goals if x not in brought)
 
 
 def _deviate(work: _Step, missing: tuple[Literal, ...]) -> None:

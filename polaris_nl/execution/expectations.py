@@ -32,9 +32,9 @@ def perceived_instead(expected: Sequence[Literal], observation: Observation) -> 
             if literal.predicate == "has"
             else (literal.args[0] if literal.args else "")
         )
-        if not literal.positive and literal.atom in observation.state.facts:
+        if not literal.positive and observation.holds(literal.atom):
             found[literal.atom] = None
-        for fact in sorted(observation.state.facts):
+        for fact in sorted(observation.state.facts - observation.unknown):
             about = (
                 fact.args[-1] if fact.predicate == "has" else (fact.args[0] if fact.args else "")
             )

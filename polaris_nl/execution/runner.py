@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from polaris_nl.automaton.program import Program, program_json
-from polaris_nl.execution.backend import Observation, Robot
+from polaris_nl.execution.backend import Observation, Robot, StopRobot
 from polaris_nl.execution.clock import Clock
 from polaris_nl.execution.events import Event, Observed, RunEnded, RunStarted
 from polaris_nl.execution.executor import (
@@ -82,20 +82,26 @@ def run(
     )
     state = ExecutorState(since=started)
     ended: RunEnded | None = None
-    while True:
-        now = clock.now()
-        robot.advance(now)
-        observation = _observed(robot, observation, now, sink)
-        inputs = Inputs(observation, tuple(robot.reports()), tuple(commands()))
-        state, orders, events = step(plan, state, now, inputs)
-        for order in orders:
-            robot.command(order)
-        for event in events:
-            ended = event if isinstance(event, RunEnded) else ended
-            sink(event)
-        if state.phase in TERMINAL:
-            break
-        clock.sleep(plan.settings.tick_s)
+    try:
+        while True:
+            now = clock.now()
+            robot.advance(now)
+            observation = _observed(robot, observation, now, sink)
+            inputs = Inputs(observation, tuple(robot.reports()), tuple(commands()))
+            state, orders, events = step(plan, state, now, inputs)
+            for order in orders:
+                robot.command(order)
+            for event in events:
+                if isinstance(event, RunEnded):
+                    event = ended = replace(event, seconds=round(now - started, 3))
+                sink(event)
+            if state.phase in TERMINAL:
+                break
+            clock.sleep(plan.settings.tick_s)
+    except BaseException:
+        # Whatever went wrong (a full disk, a key that interrupts), nothing moves without its executor.
+        robot.command(StopRobot())
+        raise
     assert ended is not None
     seconds = clock.now() - started
     return RunResult(

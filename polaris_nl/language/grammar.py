@@ -100,7 +100,7 @@ def load_grammar(domain: Domain, language: str = "en") -> Grammar:
         GrammarError: a grammar file is not as it should be; file and line are named.
     """
     folder = data_folder("grammars") / language
-    common = _common(folder / "common.yaml")
+    common = read_common(folder / "common.yaml")
     beside = domain.path.with_name("grammar.yaml") if domain.path else None
     path = folder / f"{domain.name}.yaml"
     if beside is not None and beside.is_file():
@@ -150,7 +150,12 @@ def read_grammar(path: Path, domain: Domain, common: Common, folder: Path) -> Gr
         raise GrammarError(error.reason, path, error.line) from error
 
 
-def _common(path: Path) -> Common:
+def read_common(path: Path) -> Common:
+    """Reads the grammar file that all domains share.
+
+    Raises:
+        GrammarError: it is not as it should be; file and line are named.
+    """
     try:
         root, _ = read_yaml(path)
         values = {

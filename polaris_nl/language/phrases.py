@@ -111,7 +111,10 @@ class _Maker:
 
     def clauses(self, room: int) -> Iterator[Sequence[str]]:
         """Goals, conditions and questions about facts, from every wording as many as it has choices."""
-        wanted = [(source, PER_CHOICE * max(self._width(source.parts, source), 4)) for source in self._sources]
+        wanted = [
+            (source, PER_CHOICE * max(self._width(source.parts, source), 4))
+            for source in self._sources
+        ]
         scale = min(room / max(sum(count for _, count in wanted), 1), 1.0)
         for source, count in wanted:
             for number, words in enumerate(self._drawn(source, max(round(count * scale), 4))):
@@ -121,7 +124,7 @@ class _Maker:
                     yield (*_SOFTENERS[number % len(_SOFTENERS)], *words)
 
     def composed(self) -> Iterator[Sequence[str]]:
-        """"If E, G" and "G then G"."""
+        """ "If E, G" and "G then G"."""
         events = [s for s in self._sources if s.kind == "states"]
         goals = [s for s in self._sources if s.kind == "goals"]
         for number in range(COMPOSED if goals else 0):
@@ -164,11 +167,17 @@ class _Maker:
         if isinstance(part, Slot):
             return len(self._slot(part, source))
         if isinstance(part, Choice):
-            return len(part.options) * max((self._width(o, source) for o in part.options), default=1)
+            return len(part.options) * max(
+                (self._width(o, source) for o in part.options), default=1
+            )
         return max((self._width(p, source) for p in part.parts), default=1)
 
     def _slot(self, slot: Slot, source: _Source) -> list[tuple[str, ...]]:
-        kinds = (slot.type,) if slot.type else tuple(source.types.get(slot.name, ())) or tuple(self._names)
+        kinds = (
+            (slot.type,)
+            if slot.type
+            else tuple(source.types.get(slot.name, ())) or tuple(self._names)
+        )
         if kinds not in self._fillers:
             found: list[tuple[str, ...]] = []
             for kind in kinds:

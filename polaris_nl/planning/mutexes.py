@@ -26,18 +26,30 @@ def find_mutexes(world: World) -> Mutexes:
         PlanningError: the planner can't read the domain.
     """
     candidates = invariants(domain_text(world.domain), problem_text(world, world.initial, ()))
-    found = [_group(parts, world.domain) for parts in _largest(candidates)]
-    kept = tuple(g for g in found if _at_most_one(g, world.initial))
+    found = [_group(parts, world.domain) for parts in candidates]
+    kept = tuple(
+        _largest(
+            [g for g in found if _at_most_one(g, world.initial) and not _supplied(g, world.domain)]
+        )
+    )
     groups = (*kept, *world.domain.mutexes)
     return Mutexes(groups, frozenset(_defaults(kept, world.initial)))
 
 
-def _largest(candidates: Sequence[Sequence[Part]]) -> Iterable[Sequence[Part]]:
+def _largest(groups: Sequence[MutexGroup]) -> Iterable[MutexGroup]:
     """Leaves out groups that are part of another one."""
-    for parts in candidates:
-        others = (set(other) for other in candidates if other is not parts)
-        if not any(set(parts) < other for other in others):
-            yield parts
+    for group in groups:
+        others = (set(other.patterns) for other in groups if other is not group)
+        if not any(set(group.patterns) < other for other in others):
+            yield group
+
+
+def _supplied(group: MutexGroup, domain: Domain) -> bool:
+    """Whether a group counts something that the robot only uses up, such as coins.
+
+    That there is at most one is then an accident of the start, and people may bring another.
+    """
+    return any(ANY in p.args and not domain.achievers(p) for p in group.patterns)
 
 
 def _group(parts: Sequence[Part], domain: Domain) -> MutexGroup:

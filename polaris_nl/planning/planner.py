@@ -30,11 +30,10 @@ class Planner:
 
     def __init__(self, world: World, wording: Wording | None = None) -> None:
         self.world = world
+        self.wording: Wording = wording or PlainWording(world)
         self.mutexes: Mutexes = find_mutexes(world)
         self._segments = Segments(world)
-        self._compiler = Compiler(
-            world, self.mutexes, self._segments, wording or PlainWording(world)
-        )
+        self._compiler = Compiler(world, self.mutexes, self._segments, self.wording)
 
     def compile(self, automaton: Automaton, cancelled: Callable[[], bool] = never) -> BranchingPlan:
         """The branching plan of a program, or the reasons why parts of it are missing.

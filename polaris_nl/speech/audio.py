@@ -74,7 +74,9 @@ def source_blocks(source: str | None) -> Iterator[bytes]:
         raise UsageError(
             "A microphone over the network isn't there yet; give a recording's path or a microphone's name."
         )
-    if source and (Path(source).suffix.lower() in (".wav", ".flac", ".ogg") or Path(source).is_file()):
+    if source and (
+        Path(source).suffix.lower() in (".wav", ".flac", ".ogg") or Path(source).is_file()
+    ):
         return file_blocks(Path(source))
     return microphone_blocks(source)
 

@@ -1,0 +1,233 @@
+"""The command line: sub-commands, options and an example for each. Imports nothing but argparse."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import NoReturn
+
+from polaris_nl import __version__
+
+
+class _Parser(argparse.ArgumentParser):
+    """Complains in one sentence."""
+
+    def error(self, message: str) -> NoReturn:
+        text = " ".join(message.split())
+        print(f"polaris-nl: {text}. See: {self.prog} --help", file=sys.stderr)
+        raise SystemExit(2)
+
+
+def make_parser() -> argparse.ArgumentParser:
+    """The parser of everything; `module` of what it returns names the module to run."""
+    parser = _Parser(
+        prog="polaris-nl",
+        description="Say what a service robot should achieve; see at once what it will do, and why.",
+        epilog="Start with:  polaris-nl demo\nor:          polaris-nl dialogue --world care-home",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--version", action="version", version=f"polaris-nl {__version__}")
+    commands = parser.add_subparsers(
+        dest="command", metavar="COMMAND", required=True, parser_class=_Parser
+    )
+    adder = _Adder(commands)
+    _authoring(adder)
+    _planning(adder)
+    _speaking(adder)
+    _looking(adder)
+    return parser
+
+
+class _Adder:
+    def __init__(self, commands: argparse._SubParsersAction[_Parser]) -> None:
+        self._commands = commands
+
+    def add(self, name: str, summary: str, example: str, module: str = "") -> _Parser:
+        parser = self._commands.add_parser(
+            name,
+            help=summary,
+            description=f"{summary[0].upper()}{summary[1:]}.",
+            epilog=f"example:\n  {example}",
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+        )
+        parser.set_defaults(module=module or name.replace("-", "_"))
+        parser.add_argument("--json", action="store_true", help="print JSON, for other programs")
+        return parser
+
+
+def _world(parser: _Parser, required: bool = False) -> None:
+    parser.add_argument(
+        "--world", metavar="W", required=required, help="a shipped world (see: worlds), or a file"
+    )
+
+
+def _program_option(parser: _Parser) -> None:
+    parser.add_argument(
+        "--program",
+        metavar="F",
+        type=Path,
+        help="the program file to change; made if it isn't there",
+    )
+
+
+def _program(parser: _Parser) -> None:
+    parser.add_argument("program", metavar="F", type=Path, help="a program file")
+    _world(parser)
+
+
+def _authoring(adder: _Adder) -> None:
+    say = adder.add(
+        "say",
+        "understand one utterance and change the program by it",
+        'polaris-nl say --world care-home --program lunch.polaris.json "tell the resident that lunch is ready"',
+    )
+    say.add_argument(
+        "utterance", help='what to say, in quotes; "-" reads it from the standard input'
+    )
+    _program_option(say)
+    _world(say)
+    dialogue = adder.add(
+        "dialogue",
+        "answer one utterance a line, from the keyboard or a pipe",
+        "polaris-nl dialogue --world dinner-party --program tidy.polaris.json",
+    )
+    _program_option(dialogue)
+    _world(dialogue)
+    tui = adder.add(
+        "tui",
+        "edit a program on the whole screen",
+        "polaris-nl tui lunch.polaris.json --world care-home",
+    )
+    tui.add_argument(
+        "program", metavar="F", type=Path, nargs="?", help="a program file; made if it isn't there"
+    )
+    _world(tui)
+
+
+def _planning(adder: _Adder) -> None:
+    plan = adder.add(
+        "plan", "plan a program and explain the plan", "polaris-nl plan lunch.polaris.json"
+    )
+    _program(plan)
+    why = adder.add(
+        "why",
+        "say why an action is there, or why a goal can't be reached",
+        'polaris-nl why lunch.polaris.json --action 3\n  polaris-nl why lunch.polaris.json --not "the cup is on the moon"',
+    )
+    _program(why)
+    which = why.add_mutually_exclusive_group()
+    which.add_argument("--checkpoint", metavar="X", help="a checkpoint's name or id")
+    which.add_argument(
+        "--action", metavar="N", type=int, help="an action's number, as `plan` shows it"
+    )
+    which.add_argument("--not", metavar="GOAL", dest="why_not", help="a goal in words, or as PDDL")
+    score = adder.add(
+        "score",
+        "count what a program achieves in its scenario",
+        "polaris-nl score lunch.polaris.json",
+    )
+    _program(score)
+    run = adder.add(
+        "run",
+        "carry a program out",
+        "polaris-nl run lunch.polaris.json --people dismiss --log lunch.mcap",
+    )
+    _program(run)
+    run.add_argument(
+        "--robot", choices=("world", "stretch-sim", "stretch"), default="world",
+        help="the simulated world (default), a simulated Stretch, or a Stretch",
+    )  # fmt: skip
+    run.add_argument("--log", metavar="OUT.mcap", type=Path, help="where to write the log")
+    run.add_argument(
+        "--people", metavar="ACTION", action="append",
+        help="what simulated people prefer to do, by the names in the world file; none: they do nothing",
+    )  # fmt: skip
+    run.add_argument(
+        "--live", action="store_true",
+        help="in real time; type stop, pause, resume, or what happened (the resident acknowledges)",
+    )  # fmt: skip
+
+
+def _speaking(adder: _Adder) -> None:
+    transcribe = adder.add(
+        "transcribe",
+        "turn recordings into words and what they mean",
+        "polaris-nl transcribe --world care-home order.wav",
+    )
+    transcribe.add_argument(
+        "files", metavar="FILE", nargs="+", type=Path, help="a WAV or FLAC recording"
+    )
+    _program_option(transcribe)
+    _world(transcribe)
+    transcribe.add_argument(
+        "--dialogue", action="store_true", help="each file goes on where the one before ended"
+    )
+    transcribe.add_argument(
+        "--free", action="store_true", help="recognise any words, not just the world's"
+    )
+    listen = adder.add(
+        "listen",
+        "author hands-free, by voice",
+        "polaris-nl listen --world care-home --mic order.wav",
+    )
+    _program_option(listen)
+    _world(listen)
+    listen.add_argument(
+        "--mic", metavar="NAME|FILE", help="a microphone's name or number, or a recording"
+    )
+    models = adder.add("models", "fetch the speech model", "polaris-nl models")
+    models.add_argument("--force", action="store_true", help="fetch it even if it is there")
+
+
+def _looking(adder: _Adder) -> None:
+    review = adder.add(
+        "review",
+        "read a log back",
+        "polaris-nl review lunch.mcap --filter severity=warning",
+    )
+    review.add_argument("log", metavar="LOG.mcap", type=Path, help="a log that a run has written")
+    review.add_argument(
+        "--filter", metavar="TEXT", action="append", default=[],
+        help="only events with this text, topic=NAME, or severity=warning; may be given several times",
+    )  # fmt: skip
+    review.add_argument("--events", action="store_true", help="list every event")
+    review.add_argument("--step", metavar="N", type=int, help="show event number N whole")
+    review.add_argument("--diff", metavar="OTHER.mcap", type=Path, help="compare with another run")
+    review.add_argument(
+        "--export", choices=("csv", "jsonl"), help="print the events for other programs"
+    )
+    review.add_argument("--recover", action="store_true", help="mend a file that was cut off")
+    adder.add(
+        "domains", "list the domains that ship with Polaris NL", "polaris-nl domains", "catalogue"
+    )
+    adder.add(
+        "worlds", "list the worlds that ship with Polaris NL", "polaris-nl worlds", "catalogue"
+    )
+    check = adder.add(
+        "check", "check domain, world, grammar and program files", "polaris-nl check my-world.yaml"
+    )
+    check.add_argument(
+        "files", metavar="F", nargs="+", type=Path, help="a .pddl, .yaml or .json file"
+    )
+    adder.add("doctor", "say what is installed and what is missing", "polaris-nl doctor")
+    demo = adder.add(
+        "demo", "the caregiving scenario from a recording to a reviewed log", "polaris-nl demo"
+    )
+    demo.add_argument(
+        "--folder", metavar="DIR", type=Path, help="where to keep the program and the logs"
+    )
+    export = adder.add(
+        "export",
+        "write a program in another form",
+        "polaris-nl export lunch.polaris.json --to mermaid",
+        "exchange",
+    )
+    _program(export)
+    export.add_argument(
+        "--to", choices=("mermaid", "dot", "isl"), default="mermaid", help="the form"
+    )
+    import_ = adder.add(
+        "import", "read a program in another form", "polaris-nl import lunch.isl", "exchange"
+    )
+    import_.add_argument("file", metavar="FILE", type=Path, help="an ISL file")

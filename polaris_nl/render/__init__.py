@@ -1,0 +1,1 @@
+"""Pure functions from programs, plans and states to lines of text."""
