@@ -94,7 +94,7 @@ def run_simulated(
                 status=order.plan.status,
                 plan=plan_json(order.plan, order.automaton),
                 ms=order.plan.ms,
-            )  # fmt: skip
+            )
         )
         robot = SimulatedRobot(
             world,

@@ -50,8 +50,8 @@ def _worlds() -> list[dict[str, Any]]:
                 "name": name,
                 "domain": world.domain.name,
                 "entities": len(world.entities),
-                "text": f"{world.domain.name}, {len(world.entities)} entities; rooms {', '.join(regions)}; people "
-                f"{', '.join(people)}",
+                "text": f"{world.domain.name}, {len(world.entities)} entities; "
+                f"rooms {', '.join(regions)}; people {', '.join(people)}",
             }
         )
     return found

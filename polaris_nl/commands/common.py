@@ -45,6 +45,12 @@ def print_rows(rows: Iterable[Row]) -> None:
         print(row.text.rstrip(), flush=True)
 
 
+def shown_path(path: Path) -> str:
+    """A path as short as it can be said here."""
+    here = Path.cwd()
+    return str(path.relative_to(here)) if path.is_relative_to(here) else str(path)
+
+
 def complain(text: str) -> None:
     """A sentence to the error output."""
     print(f"polaris-nl: {' '.join(text.split())}", file=sys.stderr, flush=True)

@@ -10,16 +10,16 @@ from pathlib import Path
 
 from polaris_nl.automaton.program import write_program
 from polaris_nl.commands import plan as plan_command
-from polaris_nl.commands.common import print_json, print_rows, print_text, width
-from polaris_nl.commands.review import summary_lines
+from polaris_nl.commands.common import print_json, print_rows, print_text, shown_path, width
+from polaris_nl.commands.review import run_lines
 from polaris_nl.commands.run import shower
 from polaris_nl.commands.transcribe import Ear
 from polaris_nl.execution.events import Event
 from polaris_nl.logs.paths import log_folder, new_log_path
 from polaris_nl.logs.reader import read_log
+from polaris_nl.logs.review import summary
 from polaris_nl.model.data import data_folder
 from polaris_nl.model.errors import LogError, RunError
-from polaris_nl.model.text import listed
 from polaris_nl.model.world_file import load_world
 from polaris_nl.render.glyphs import glyphs_for
 from polaris_nl.render.program import program_rows
@@ -85,7 +85,7 @@ class _Demo:
             print()
             print_text(f"That was all, in {seconds:.0f} s. Go on with your own words:")
             print(f"  polaris-nl dialogue --world {WORLD}")
-            print(f"  polaris-nl tui {program}")
+            print(f"  polaris-nl tui {shown_path(program)}")
         return 0 if all(r.result.outcome == "done" for r in reports) else 1
 
     def _step(self, title: str) -> None:
@@ -132,11 +132,9 @@ class _Demo:
         self._step(f"The log {report.log.name}, read back")
         if not self._json:
             log = read_log(report.log)
-            for line in summary_lines(log)[1:]:
+            for line in run_lines(log, summary(log.events)):
                 print_text(line)
-            print_text(
-                f"Reached {listed(report.result.checkpoints)}. See more with: polaris-nl review {report.log}"
-            )
+            print(f"More: polaris-nl review {shown_path(report.log)}")
 
 
 def _writable(folder: Path) -> Path:

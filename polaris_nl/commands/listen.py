@@ -14,7 +14,7 @@ from polaris_nl.speech.recogniser import VoskModel, VoskRecogniser
 
 
 def run(arguments: Namespace) -> int:
-    """Answers every sentence as soon as it has ended, until the sound or the user does; 1 where a save failed."""
+    """Answers each sentence as soon as it has ended, until sound or user do; 1 where a save failed."""
     code = 0
     blocks = source_blocks(arguments.mic)
     model = VoskModel(model_folder())

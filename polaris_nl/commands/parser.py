@@ -113,7 +113,8 @@ def _planning(adder: _Adder) -> None:
     why = adder.add(
         "why",
         "say why an action is there, or why a goal can't be reached",
-        'polaris-nl why lunch.polaris.json --action 3\n  polaris-nl why lunch.polaris.json --not "the cup is on the moon"',
+        "polaris-nl why lunch.polaris.json --action 3\n"
+        '  polaris-nl why lunch.polaris.json --not "the cup is on the desk"',
     )
     _program(why)
     which = why.add_mutually_exclusive_group()

@@ -14,7 +14,7 @@ from polaris_nl.commands.common import print_json, print_rows, print_text, width
 from polaris_nl.execution.events import Event
 from polaris_nl.logs.reader import Log, filtered, read_log
 from polaris_nl.logs.recovery import recover
-from polaris_nl.logs.review import matcher, rows, story, summary
+from polaris_nl.logs.review import Summary, matcher, rows, story, summary
 from polaris_nl.logs.schema import event_json
 from polaris_nl.model.errors import UsageError
 from polaris_nl.model.text import listed
@@ -68,6 +68,12 @@ def summary_lines(log: Log) -> list[str]:
     short = summary(log.events)
     lines = [f'You said: "{plain(text)}"' for text in short.said]
     lines += [f"Understood: {text}" for text in short.understood if text]
+    return [*lines, *run_lines(log, short)]
+
+
+def run_lines(log: Log, short: Summary) -> list[str]:
+    """What the run of a log did."""
+    lines: list[str] = []
     if short.plan:
         lines.append(
             f"Plan: {short.plan}. {short.goals_done} of {short.goals_sent} actions that were begun got done."

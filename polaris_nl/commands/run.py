@@ -10,7 +10,15 @@ from collections.abc import Callable, Iterable
 
 from polaris_nl.automaton.automaton import Automaton
 from polaris_nl.automaton.edits import AddCheckpoint
-from polaris_nl.commands.common import complain, opened, print_json, print_rows, print_text, width
+from polaris_nl.commands.common import (
+    complain,
+    opened,
+    print_json,
+    print_rows,
+    print_text,
+    shown_path,
+    width,
+)
 from polaris_nl.execution.events import Event, GoalConfirmed
 from polaris_nl.execution.executor import HumanCommand
 from polaris_nl.execution.runner import objectives_met
@@ -64,7 +72,7 @@ def run(arguments: Namespace) -> int:
         done = [o.name for o, ok in met if ok]
         if met:
             print_text(f"Objectives: {len(done)} of {len(met)} ({', '.join(done) or 'none'}).")
-        print_text(f"Log: {report.log}. Read it with: polaris-nl review {report.log}")
+        print_text(f"The log can be read with: polaris-nl review {shown_path(report.log)}")
     return 0 if result.outcome == "done" and not report.failure else 1
 
 

@@ -1,9 +1,10 @@
-"""The executor's core: pure steps from what is perceived to commands and events (DESIGN section 5 points 8 and 9).
+"""The executor's core: pure steps from perception to commands and events (DESIGN section 5 points 8, 9).
 
-Each action of the branching plan is sent as a goal, its effects. A goal is done when its literals have been perceived for a while,
-whatever the robot reports. Where an object isn't where the next action needs it, the run deviates: it goes on if that is put right
-within the grace time, and halts otherwise, saying what was expected and what was seen. What the robot can put right by itself (where it
-is, what is open) is left to its own planning of each goal.
+Each action of the branching plan is sent as a goal, its effects. A goal is done when its literals
+have been perceived for a while, whatever the robot reports. Where an object isn't where the next
+action needs it, the run deviates: it goes on if that is put right within the grace time, and halts
+otherwise, saying what was expected and what was seen. What the robot can put right by itself (where
+it is, what is open) is left to its own planning of each goal.
 """
 
 from __future__ import annotations
@@ -158,7 +159,8 @@ def step(
 ) -> tuple[ExecutorState, tuple[Command, ...], tuple[Event, ...]]:
     """One step: from the state and what is perceived to the next state, commands and events.
 
-    Pure: the same arguments give the same result. After a terminal phase nothing is commanded any more.
+    Pure: the same arguments give the same result. After a terminal phase nothing is commanded any
+    more.
 
     Args:
         run: what is carried out.
@@ -403,7 +405,7 @@ def _reach(work: _Step) -> None:
         _deviate(work, missing)
         return
     checkpoint = work.run.automaton.checkpoints[work.state.segment]
-    text = sentence(f"{checkpoint.name} is reached")
+    text = f"Reached {checkpoint.name}."
     work.events.append(
         CheckpointReached(time=work.now, text=text, checkpoint=checkpoint.id, name=checkpoint.name)
     )

@@ -1,4 +1,4 @@
-"""What an action needs of the world that only a person changes behind the robot's back, and what is seen instead."""
+"""What an action needs that only people change behind the robot's back, and what is seen instead."""
 
 from __future__ import annotations
 

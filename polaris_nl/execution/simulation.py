@@ -1,7 +1,7 @@
 """The in-process world: a robot that plans its own way to each goal, and people who do as the world says.
 
-Seeded and without a clock of its own, so that a run is the same every time. Faults can be scheduled: it is the test
-double of the executor as well as the robot of `run --robot world`.
+Seeded and without a clock of its own, so that a run is the same every time. Faults can be
+scheduled: it is the test double of the executor as well as the robot of `run --robot world`.
 """
 
 from __future__ import annotations
@@ -40,7 +40,8 @@ class Fault:
 
     Attributes:
         at: seconds after the start.
-        kind: `reject`, `never`, `lie`, `fail` (for the goals from then on, `times` of them), `blind` (perception is
+        kind: `reject`, `never`, `lie`, `fail` (for the goals from then on, `times` of them),
+            `blind` (perception is
             lost for `seconds`), `ignore-cancel`, or `event` (somebody makes `literals` true).
     """
 
@@ -58,7 +59,8 @@ class SimulationSettings:
     Attributes:
         action_s: how long an action takes, by operator; `default` for the others.
         human_s: the shortest and longest time that a person takes to act, in seconds.
-        people: names of human actions that people prefer, or None for whatever the world lists first.
+        people: names of human actions that people prefer, or None for whatever the world lists
+            first.
         seed: makes the same run again.
     """
 
@@ -223,7 +225,7 @@ class SimulatedRobot:
             if self._now >= at:
                 self._acted.add(action.name)
                 self._make_true(action.effect)
-                text = sentence(f"somebody did this: {action.name}")
+                text = sentence(f"somebody acts: {action.name}")
                 effect = [str(x) for x in action.effect]
                 self._sink(
                     PersonActed(time=self._now, text=text, action=action.name, effect=effect)

@@ -82,7 +82,7 @@ class Changes:
         try:
             meant = self._entities(new, touched, program, dialogue)
         except Unclear as unclear:
-            return language._asked(utterance, unclear, dialogue)
+            return language.asked(utterance, unclear, dialogue)
         except Misfit:
             return None
         if len(meant) != 1:
@@ -103,7 +103,7 @@ class Changes:
         self, mention: Mention, touched: Sequence[str], program: Automaton, dialogue: Dialogue
     ) -> tuple[str, ...]:
         """What is meant instead: "the other table" is not the one that is there."""
-        resolver = self._language._resolver
+        resolver = self._language.resolver
         if not mention.other:
             return resolver.meant(
                 replace(mention, pronoun="one") if mention.pronoun == "one" else mention,
@@ -138,7 +138,7 @@ class Changes:
         kind, noun = world.entities[new].type, world.entities[new].noun
         same = [u for u in used if world.entities[u].type == kind and u != new]
         nouns = [u for u in same if noun and (world.entities[u].noun == noun or u == noun)]
-        return (nouns or same or [None])[0]
+        return next(iter(nouns or same), None)
 
     # Edits: "rename fetched to served", "before home, open the cupboard"
 
@@ -155,13 +155,13 @@ class Changes:
             try:
                 edits, say, touched = self._edits(match, tokens, program, dialogue)
             except Unclear as unclear:
-                return self._language._asked(utterance, unclear, dialogue)
+                return self._language.asked(utterance, unclear, dialogue)
             except Misfit:
                 continue
             try:
                 changed = apply_all(program, edits)
             except EditError as error:
-                return self._language._refused(utterance, str(error)), dialogue
+                return self._language.refused(utterance, str(error)), dialogue
             if changed == program:
                 return Interpretation(
                     utterance, "answer", "It is like that already; nothing changes."
@@ -221,7 +221,7 @@ class Changes:
         name = program.checkpoints[this].name
         words = goals_in_words(goals, language.wording)
         new = Checkpoint(
-            program.fresh_checkpoint_id(), language._names.checkpoint(goals, when, program), goals
+            program.fresh_checkpoint_id(), language.names.checkpoint(goals, when, program), goals
         )
         arrow = program.fresh_transition_id()
         if intent == "replace":
@@ -283,7 +283,7 @@ class Changes:
             if cut.unknown:
                 continue
             try:
-                steps, _ = steps_of(cut, self._language._resolver, dialogue.scope)
+                steps, _ = steps_of(cut, self._language.resolver, dialogue.scope)
             except Misfit:
                 continue
             except Unclear as unclear:

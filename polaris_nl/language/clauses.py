@@ -1,4 +1,4 @@
-"""Clauses: wordings of predicates with mentions that fit their signatures. A reading that doesn't fit is none."""
+"""Clauses: wordings of predicates with mentions that fit. A reading that doesn't fit is none."""
 
 from __future__ import annotations
 
@@ -31,7 +31,8 @@ class Clause:
     """One predicate, said of mentions.
 
     Attributes:
-        kind: an imperative, a state, a state that is wished for, or a rest that leans on the clause before.
+        kind: an imperative, a state, a state that is wished for, or a rest that leans on the clause
+            before.
         bindings: the parameter's name (without `?`) and what was said for it.
         cost: how much speaks against it.
     """

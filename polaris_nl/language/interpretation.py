@@ -43,8 +43,7 @@ class Refusal:
 
 @dataclass(frozen=True, slots=True)
 class Query:
-    """A question by the user that only the session can answer, because it needs the plan or the
-    state.
+    """A question by the user that only the session can answer: it needs the plan or the state.
 
     Attributes:
         kind: what is asked: the plan (of a branch), the program, a checkpoint, where an entity is,

@@ -61,8 +61,9 @@ class Lexicon:
             for name in sorted(members):
                 _add(drafts, phrase(kind), name, 2, kind)
         for kind, nouns in _TYPE_NOUNS.items():
-            members = {e.name for e in world.of_type(kind)} if kind in world.domain.types else set()
-            for noun, name in itertools.product(nouns, sorted(members)):
+            known = kind in world.domain.types
+            typed = sorted(e.name for e in world.of_type(kind)) if known else []
+            for noun, name in itertools.product(nouns, typed):
                 _add(drafts, (noun,), name, 3, kind)
         for words, draft in list(drafts.items()):
             for plural in _plurals(words):

@@ -1,4 +1,4 @@
-"""Finds mentions in tokens: determiners, possessives, quantifiers, adjectives and lists around the world's phrases."""
+"""Finds mentions: determiners, possessives, quantifiers, adjectives and lists around names."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class MentionFinder:
     def __init__(self, lexicon: Lexicon, grammar: Grammar) -> None:
         common = grammar.common
         self._lexicon = lexicon
-        self._determiners = {p for p in common.words("determiners")}
+        self._determiners = set(common.words("determiners"))
         self._quantifiers: dict[tuple[str, ...], Quantifier] = {}
         self._quantifiers.update(dict.fromkeys(common.words("all"), "all"))
         self._quantifiers.update(dict.fromkeys(common.words("both"), "both"))

@@ -1,4 +1,4 @@
-"""Wordings that are about the program or the plan rather than about the world: edits, questions, corrections."""
+"""Wordings about the program or the plan, not about the world: edits, questions, corrections."""
 
 from __future__ import annotations
 
@@ -20,7 +20,8 @@ class Match:
 
     Attributes:
         intent: the key of its list in the grammar: `rename`, `where`, ...
-        slots: mentions for x and y, checkpoint ids for k and l, spans of tokens for everything else.
+        slots: mentions for x and y, checkpoint ids for k and l, spans of tokens for everything
+            else.
     """
 
     intent: str

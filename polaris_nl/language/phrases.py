@@ -1,7 +1,8 @@
 """Phrases for a recogniser: the grammar's wordings with the world's names, as a list of what may be said.
 
-A recogniser makes of them which word may follow which, and recombines. So what matters is that every choice of every
-wording and every name occurs, between many different neighbours; not that every combination does.
+A recogniser makes of them which word may follow which, and recombines. So what matters is that
+every choice of every wording and every name occurs, between many different neighbours; not that
+every combination does.
 """
 
 from __future__ import annotations
@@ -40,7 +41,7 @@ _SOFTENERS: tuple[tuple[str, ...], ...] = ((), (), ("just",), ("please",), ("the
 
 
 def recogniser_phrases(world: World, grammar: Grammar) -> tuple[str, ...]:
-    """At most 20,000 phrases in a fixed order: controls and names first, then clauses, then pairs of clauses."""
+    """At most 20,000 phrases in a fixed order: controls, names, clauses, then pairs of clauses."""
     maker = _Maker(world, grammar)
     found = dict.fromkeys(_text(words) for words in maker.fixed())
     clauses = maker.clauses(MOST - len(found) - COMPOSED)
@@ -124,7 +125,7 @@ class _Maker:
                     yield (*_SOFTENERS[number % len(_SOFTENERS)], *words)
 
     def composed(self) -> Iterator[Sequence[str]]:
-        """ "If E, G" and "G then G"."""
+        """Two clauses at a time: "if E, G" and "G then G"."""
         events = [s for s in self._sources if s.kind == "states"]
         goals = [s for s in self._sources if s.kind == "goals"]
         for number in range(COMPOSED if goals else 0):

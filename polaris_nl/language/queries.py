@@ -54,10 +54,10 @@ def _query(
         mention = slots["x"]
         assert isinstance(mention, Mention)
         try:
-            entities = language._resolver.meant(mention, (), dialogue.scope).entities
+            entities = language.resolver.meant(mention, (), dialogue.scope).entities
         except Unclear as unclear:
             question = Question(unclear.about, unclear.options)
-            say = language._questions.asked(unclear.about, unclear.options)
+            say = language.questions.asked(unclear.about, unclear.options)
             return Interpretation(" ".join(tokens), "question", say, question=question)
         except Misfit:
             return None
@@ -93,7 +93,7 @@ def _condition(
         try:
             for item in conditions:
                 assert item.clause is not None
-                literals, scope = language._resolver.literals(item.clause, scope, condition=True)
+                literals, scope = language.resolver.literals(item.clause, scope, condition=True)
                 found.extend(x for x in literals if isinstance(x, Literal))
         except (Unclear, Misfit):
             continue

@@ -96,8 +96,8 @@ class Refusals:
     def help(self) -> str:
         """What can be said."""
         return (
-            f"{self.examples()} Add conditions with once, if, unless or otherwise; ask what I will do; say undo, "
-            "read it back, or run it."
+            f"{self.examples()} Add conditions with once, if, unless or otherwise; "
+            "ask what I will do; say undo, read it back, or run it."
         )
 
     def examples(self) -> str:

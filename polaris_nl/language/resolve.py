@@ -1,4 +1,4 @@
-"""Which entities mentions mean: by type, owner, adjectives, place, what was mentioned before; else one question."""
+"""Which entities mentions mean: by type, owner, adjectives, place and what was said before."""
 
 from __future__ import annotations
 
@@ -90,11 +90,11 @@ class Resolver:
             scope = scope.after(self.meant(mention, ("person",), scope, condition).entities)
         chosen: list[Meant] = []
         for parameter in predicate.parameters:
-            mention = bindings.get(parameter.name.lstrip("?"))
-            if mention is None:
+            bound = bindings.get(parameter.name.lstrip("?"))
+            if bound is None:
                 chosen.append(self._implied(clause, parameter, scope))
                 continue
-            meant = self.meant(mention, parameter.types, scope, condition)
+            meant = self.meant(bound, parameter.types, scope, condition)
             scope = scope.after(meant.entities)
             chosen.append(meant)
         goals = self._combined(clause, chosen)

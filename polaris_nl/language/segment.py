@@ -1,7 +1,7 @@
 """Cuts an utterance into clauses and connectives: the cheapest way to account for every word.
 
-A shortest-path search over positions (Viterbi), since recognised speech has no punctuation to cut at. Words that nothing accounts for are
-skipped at a high price and reported.
+A shortest-path search over positions (Viterbi), since recognised speech has no punctuation to cut
+at. Words that nothing accounts for are skipped at a high price and reported.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""From cut utterances to edits: where new checkpoints go, under which conditionals (DESIGN section 5 point 10)."""
+"""From cut utterances to edits: where checkpoints go, and when (DESIGN section 5 point 10)."""
 
 from __future__ import annotations
 
@@ -22,7 +22,8 @@ class Step:
     """Goals that belong to one checkpoint, or a wait without goals.
 
     Attributes:
-        role: `then` goes after the step before; `condition` starts a branch; `else` is taken if the others can't be.
+        role: `then` goes after the step before; `condition` starts a branch; `else` is taken if the
+            others can't be.
     """
 
     goals: tuple[Goal, ...] = ()

@@ -1,7 +1,8 @@
 """Wordings: what can be said, as small patterns.
 
-`(bring|fetch) {o} [over] to {s}` is words, a choice, an optional part and slots. `<list>` stands for a list of the grammar. A slot
-`{p:person}` names the type it takes, another one takes the type of the predicate's parameter.
+`(bring|fetch) {o} [over] to {s}` is words, a choice, an optional part and slots. `<list>` stands
+for a list of the grammar. A slot `{p:person}` names the type it takes, another one takes the type
+of the predicate's parameter.
 """
 
 from __future__ import annotations

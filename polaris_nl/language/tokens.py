@@ -83,7 +83,7 @@ def words(text: str) -> list[str]:
     lowered = re.sub(r"\s*\n\s*", " . ", lowered.strip())
     # Marks stand alone, so that "1." and "home." are split the same way.
     lowered = re.sub(r"([.,!?;:…])", r" \1 ", lowered)
-    found = []
+    found: list[str] = []
     for token in _tokenizer()(re.sub(r"\s+", " ", lowered).strip()):
         word = token.text
         if not word.isspace():

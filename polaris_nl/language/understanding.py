@@ -55,8 +55,8 @@ class Understanding:
         lexicon = Lexicon(world)
         self._mentions = MentionFinder(lexicon, self.grammar)
         self._segmenter = Segmenter(common, ClauseFinder(world, self.grammar))
-        self._resolver = Resolver(world)
-        self._names = Names(world, self.grammar)
+        self.resolver = Resolver(world)
+        self.names = Names(world, self.grammar)
         self._fillers = common.words("fillers")
         self._commands: dict[tuple[str, ...], Command] = {}
         for command in common.mapping("commands"):
@@ -64,7 +64,7 @@ class Understanding:
                 self._commands.setdefault(phrase_words, command)  # type: ignore[arg-type]
         self._spelling = Spelling(self.grammar, lexicon)
         self._refusals = Refusals(world, self.grammar, lexicon, self.wording)
-        self._questions = Questions(common)
+        self.questions = Questions(common)
         self._edits = Patterns(common, "edits")
         self._queries = Patterns(common, "queries")
         self._changes = Changes(self)
@@ -83,18 +83,18 @@ class Understanding:
         """
         dialogue = dialogue or Dialogue()
         if len(utterance) > LONGEST:
-            return self._refused(
+            return self.refused(
                 utterance[:60] + "...", "That is too long; say it in several sentences."
             ), dialogue
         tokens = words(utterance)
         if len(tokens) > MOST_WORDS:
-            return self._refused(
+            return self.refused(
                 utterance, "That is too long; say it in several sentences."
             ), dialogue
         tokens = self._spelling.mended(tokens, program)
         bare = strip(tokens, self._fillers)
         if not any(t not in (BREAK, COMMA) for t in tokens):
-            return self._refused(
+            return self.refused(
                 utterance, "I heard nothing. Say what the robot should achieve."
             ), dialogue
         pending = dialogue.pending
@@ -163,7 +163,7 @@ class Understanding:
         cuts = self.cuts(tokens)
         for word, reason in self.grammar.common.mapping("refused").items():
             if word in tokens:
-                return self._refused(utterance, str(reason), (word,)), dialogue
+                return self.refused(utterance, str(reason), (word,)), dialogue
         good = [cut for cut in cuts if not cut.unknown and _says_something(cut)]
         results = list(self._tried(utterance, good, program, dialogue))
         if results:
@@ -183,11 +183,11 @@ class Understanding:
     ) -> Iterator[tuple[float, Interpretation, Dialogue]]:
         for cut in cuts:
             try:
-                steps, scope = steps_of(cut, self._resolver, dialogue.scope)
+                steps, scope = steps_of(cut, self.resolver, dialogue.scope)
             except Misfit:
                 continue
             except Unclear as unclear:
-                meant, after = self._asked(utterance, unclear, dialogue)
+                meant, after = self.asked(utterance, unclear, dialogue)
                 yield cut.cost + QUESTION_COST, meant, after
                 continue
             if not steps:
@@ -217,17 +217,18 @@ class Understanding:
             leaves = [c for c in program.checkpoints if not program.outgoing(c)]
             here = leaves[-1] if leaves else START
         anchor = dialogue.anchor if dialogue.anchor in program.checkpoints else None
-        return Builder(self.world, self._names, program, here, anchor)
+        return Builder(self.world, self.names, program, here, anchor)
 
     # Questions and refusals
 
-    def _asked(
+    def asked(
         self, utterance: str, unclear: Unclear, dialogue: Dialogue
     ) -> tuple[Interpretation, Dialogue]:
+        """The question that an unclear mention needs, kept open in the dialogue."""
         question = Question(unclear.about, unclear.options)
         by_name = {self.world.entities[e].spoken: e for e in self.world.entities}
         options = tuple((o, by_name.get(o, o)) for o in unclear.options)
-        say = self._questions.asked(unclear.about, unclear.options)
+        say = self.questions.asked(unclear.about, unclear.options)
         pending = Pending(utterance, unclear.phrase, options)
         return Interpretation(utterance, "question", say, question=question), replace(
             dialogue, pending=pending
@@ -242,7 +243,7 @@ class Understanding:
         dialogue: Dialogue,
     ) -> tuple[Interpretation, Dialogue] | None:
         """Reads an utterance as the answer to the open question, or None where it is something else."""
-        chosen = self._questions.choice(bare, pending.options, self.mentions(bare))
+        chosen = self.questions.choice(bare, pending.options, self.mentions(bare))
         if chosen is None:
             return None
         if chosen == "":
@@ -278,15 +279,16 @@ class Understanding:
     ) -> Interpretation:
         for cut in good:
             try:
-                steps_of(cut, self._resolver, dialogue.scope)
+                steps_of(cut, self.resolver, dialogue.scope)
             except Misfit as misfit:
-                return self._refused(utterance, str(misfit))
+                return self.refused(utterance, str(misfit))
             except Unclear:
                 continue
         unknown = self._refusals.unknown(tokens, cuts[0].unknown if cuts else tuple(tokens))
-        return self._refused(utterance, self._refusals.reason(tokens, unknown, cuts), unknown)
+        return self.refused(utterance, self._refusals.reason(tokens, unknown, cuts), unknown)
 
-    def _refused(self, utterance: str, reason: str, unknown: Sequence[str] = ()) -> Interpretation:
+    def refused(self, utterance: str, reason: str, unknown: Sequence[str] = ()) -> Interpretation:
+        """A refusal with its reason and the words that weren't understood."""
         return Interpretation(utterance, "refused", reason, refusal=Refusal(reason, tuple(unknown)))
 
 

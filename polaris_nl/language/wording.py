@@ -97,7 +97,22 @@ class GrammarWording:
             p.name.lstrip("?"): ("the x" if a.startswith("?") else self.entity(a))
             for p, a in zip(parameters, args, strict=True)
         }
-        return re.sub(r"\{(\w+)\}", lambda m: names.get(m[1], m[0]), template)
+        told = dict(zip((p.name.lstrip("?") for p in parameters), args, strict=True))
+
+        def filler(slot: re.Match[str]) -> str:
+            if slot[2] == "said":
+                return self._said(told.get(slot[1], ""))
+            return names.get(slot[1], slot[0])
+
+        text = re.sub(r"\{(\w+)(?::(\w+))?\}", filler, template)
+        return re.sub(r"\b(go|come|return) to home\b", r"\1 home", text)
+
+    def _said(self, message: str) -> str:
+        """A message as what is told: "that lunch is ready", or "of bingo" where it is no clause."""
+        entity = self._world.entities.get(message)
+        names = (entity.spoken, *entity.synonyms) if entity else ()
+        clause = next((n for n in names if re.search(r" (is|are|has|have) ", n)), None)
+        return f"that {clause}" if clause else f"of {self.entity(message)}"
 
     def _all(self, condition: Formula, variable: str) -> str:
         """What a quantifier runs over: "every dirty dish on the dining table"."""
@@ -123,10 +138,9 @@ class GrammarWording:
 
     def _is_named(self, name: str) -> bool:
         """Proper names take no article."""
-        entity = self._world.entities[name]
         numbered = bool(re.search(r"-\d+$", name))
         titled = bool(re.match(r"(mr|mrs|ms|miss|dr)\b", name))
-        return titled or (numbered and not entity.owner)
+        return titled or numbered
 
 
 def _every(goal: Formula) -> tuple[Formula, Formula, str] | None:

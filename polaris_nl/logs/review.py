@@ -92,7 +92,7 @@ def summary(events: Sequence[Event]) -> Summary:
 
 
 def matcher(filters: Sequence[str]) -> Callable[[Event], bool]:
-    """A test for events: `topic=goal`, `severity=warning` (that and worse), or any text, all of which must hold."""
+    """A test for events: `topic=goal`, `severity=warning` (that and worse), or text; all must hold."""
     tests: list[Callable[[Event], bool]] = [_test(text) for text in filters]
     return lambda event: all(test(event) for test in tests)
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import functools
 from collections.abc import Mapping
 from typing import Any, get_args, get_origin, get_type_hints
 
@@ -19,7 +18,6 @@ _PLAIN: Mapping[Any, dict[str, Any]] = {
 }
 
 
-@functools.cache
 def schema_of(event: type[Event]) -> dict[str, Any]:
     """The JSON Schema of an event class."""
     hints = get_type_hints(event)

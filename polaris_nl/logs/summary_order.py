@@ -1,8 +1,9 @@
 """Orders a log's index so that readers of ROS bags open it, too.
 
-MCAP allows channels of any encoding beside ROS ones, but `rosbags` gives up at the first schema in the index that it can't read. It looks a
-channel's schema up as it meets the channel, so ROS schemas are put before the channels and the others behind them.
-Readers that know JSON Schema collect the index first and see no difference.
+MCAP allows channels of any encoding beside ROS ones, but `rosbags` gives up at the first schema in
+the index that it can't read. It looks a channel's schema up as it meets the channel, so ROS schemas
+are put before the channels and the others behind them. Readers that know JSON Schema collect the
+index first and see no difference.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
 """Writes events to MCAP so that a crash loses nothing that was written.
 
-While a run lasts, the file is a journal: no chunks, every message flushed, and forced to the disk at the moments that matter. On closing it
-is written anew with compression and an index, and moved into the journal's place.
+While a run lasts, the file is a journal: no chunks, every message flushed, and forced to the disk
+at the moments that matter. On closing it is written anew with compression and an index, and moved
+into the journal's place.
 """
 
 from __future__ import annotations
@@ -41,7 +42,8 @@ class LogWriter:
 
     Args:
         path: the file to make; it must not exist.
-        attachments: files that make the log explain itself elsewhere, by name: program, domain, world.
+        attachments: files that make the log explain itself elsewhere, by name: program, domain,
+            world.
 
     Raises:
         LogError: the file can't be made.
@@ -88,8 +90,8 @@ class LogWriter:
         """Writes an event.
 
         Returns:
-            Whether it is in the file. After a failure (`failure` says which) nothing more is written,
-            and what was written stays.
+            Whether it is in the file. After a failure (`failure` says which) nothing more is
+            written, and what was written stays.
         """
         with self._lock:
             if self.failure or self._file.closed:
@@ -111,7 +113,7 @@ class LogWriter:
                 return
             with contextlib.suppress(OSError):
                 if not self.failure:
-                    self._writer.finish()
+                    self._writer.finish()  # type: ignore[no-untyped-call] # mcap leaves it out
                     self._force()
             with contextlib.suppress(OSError):
                 self._file.close()
@@ -156,14 +158,17 @@ class LogWriter:
         return self._channels[event.topic]
 
     def _flush(self) -> None:
-        self._writer.flush()
+        self._writer.flush()  # type: ignore[no-untyped-call] # mcap leaves it out
         self._file.flush()
 
     def _force(self) -> None:
         os.fsync(self._file.fileno())
 
     def _fail(self, error: OSError) -> None:
-        self.failure = f"The log {self.path} can't be written any more: {error.strerror}. The run goes on without it."
+        self.failure = (
+            f"The log {self.path} can't be written any more: {error.strerror}. "
+            "The run goes on without it."
+        )
 
 
 def finalise(path: Path, source: Path | None = None) -> None:

@@ -255,7 +255,8 @@ def _check(domain: Domain, root: Group) -> None:
             for node in section.items[2:]:
                 _check_atoms(node, domain)
     known = {*domain.types, "object"}
-    for thing in (*domain.predicates.values(), *domain.operators.values()):
+    things: list[Predicate | Operator] = [*domain.predicates.values(), *domain.operators.values()]
+    for thing in things:
         for parameter in thing.parameters:
             for kind in parameter.types:
                 if kind not in known:

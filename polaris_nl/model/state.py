@@ -82,8 +82,7 @@ class State:
         return State((self.facts - frozenset(removed)) | frozenset(added))
 
     def after_event(self, literals: Iterable[Literal], mutexes: Mutexes) -> State:
-        """The state after somebody has made literals true, each new fact displacing what it
-        excludes.
+        """The state after somebody made literals true; each new fact displaces what it excludes.
 
         This is how a conditional is made true (DESIGN section 5 point 2): negative literals are
         removed, positive ones are added, what they exclude goes, and a group that is left with none

@@ -1,5 +1,4 @@
-"""How entities, facts and actions are put into words: the protocol, and plain wording without a
-grammar.
+"""How entities, facts and actions are put into words: the protocol, and wording without a grammar.
 
 Planning and rendering say things without knowing the language: they are handed a `Wording`. The
 language side makes one from a domain's grammar file; `PlainWording` serves domains that have none.
@@ -13,8 +12,6 @@ from typing import Protocol
 
 from polaris_nl.model.domain import Action
 from polaris_nl.model.formula import Formula, Literal
-from polaris_nl.model.text import listed as listed
-from polaris_nl.model.text import sentence as sentence
 from polaris_nl.model.world import World
 
 

@@ -38,8 +38,9 @@ def plan_tree(automaton: Automaton, segments: Mapping[str, Segment], world: Worl
     while waiting:
         here = waiting.pop()
         for transition in automaton.outgoing(str(here.checkpoint)):
-            if transition.target in segments:
-                waiting.append(_add_segment(here, segments[transition.target], world))
+            segment = segments.get(transition.target)
+            if segment is not None:
+                waiting.append(_add_segment(here, segment, world))
     return _finished(root)
 
 

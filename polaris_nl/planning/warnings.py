@@ -24,6 +24,10 @@ def warnings_of(
     """Conditionals that hold already, are impossible or overlap, and elses that can't be taken.
 
     Args:
+        automaton: the program.
+        mutexes: what excludes what.
+        world: entities and facts.
+        wording: words for them.
         states: the state at each checkpoint that has a plan, the start included.
     """
     found: list[Warning] = []

@@ -8,6 +8,9 @@ from typing import Literal as OneOf
 
 from polaris_nl.render.glyphs import plain
 
+NO_BREAK = "\u00a0"
+"""Stands for a blank where `wrapped` may not break the row."""
+
 Tone = OneOf["", "strong", "good", "bad", "faint"]
 
 
@@ -42,13 +45,16 @@ def wrapped(
         width: characters in a row.
         first: stands before the first row.
         rest: stands before the others; as many spaces as `first` is long by default.
-        tone, checkpoint, action: for all rows.
+        tone: of all rows.
+        checkpoint: that all rows are about.
+        action: that all rows are about, by its number.
     """
     rest = " " * len(first) if rest is None else rest
     lines = textwrap.wrap(
         plain(text), max(width, len(rest) + 20), initial_indent=first, subsequent_indent=rest
     )
-    return [Row(line, tone, checkpoint, action) for line in lines or [first.rstrip()]]
+    shown = (line.replace(NO_BREAK, " ") for line in lines or [first.rstrip()])
+    return [Row(line, tone, checkpoint, action) for line in shown]
 
 
 def text_of(rows: list[Row]) -> str:

@@ -18,7 +18,8 @@ def map_lines(world: World, state: State, glyphs: Glyphs, width: int, height: in
         world: the world.
         state: where things are now.
         glyphs: ASCII or Unicode decides the lines.
-        width, height: the room there is, in characters.
+        width: the room there is, in characters.
+        height: the same, in rows.
     """
     regions = [e for e in world.of_type("region") if e.area is not None]
     if not regions:

@@ -19,7 +19,7 @@ from polaris_nl.model.text import listed
 from polaris_nl.model.wording import Wording
 from polaris_nl.planning.result import BranchingPlan, Segment
 from polaris_nl.render.glyphs import Glyphs
-from polaris_nl.render.layout import Row, Tone, wrapped
+from polaris_nl.render.layout import NO_BREAK, Row, Tone, wrapped
 
 EMPTY = "Nothing yet. Say what the robot should achieve."
 _NO_PLAN = {
@@ -120,7 +120,7 @@ class _Drawer:
         if self._actions and segment is not None:
             yield from self._steps(segment, rest)
         status, tone = self._status(checkpoint, segment)
-        text = f"{here.name}: {self._goals(here)}  {status}"
+        text = f"{here.name}: {self._goals(here)}  {status.replace(' ', NO_BREAK)}"
         lead = f"{rest}{self._glyphs.checkpoint} "
         yield from wrapped(text, self._width, lead, rest + "  ", tone, checkpoint)
 

@@ -1,6 +1,7 @@
-"""From what may have been said to what was said: the first reading that makes sense, and that free listening bears out.
+"""From what may have been said to what was said: the first reading that makes sense.
 
-Vosk with phrases turns any speech into phrases. So every reading is parsed strictly, and the same audio is decoded
+Vosk with phrases turns any speech into phrases. So every reading is parsed strictly, and the same
+audio is decoded
 freely: where the two differ too much, the words were not meant for the robot.
 """
 
@@ -64,7 +65,7 @@ def _readable(piece: Spoken) -> tuple[str, ...]:
 
 
 def _with(chosen: list[str], readings: Iterable[str], parses: Parses) -> list[str] | None:
-    """The pieces so far with the first reading that makes sense as a new sentence or as more of the last one."""
+    """The pieces with the first reading that makes sense as a new sentence or as more of the last."""
     readings = tuple(readings)
     for reading in readings:
         if parses(BREAK.join([*chosen, reading])):

@@ -1,8 +1,8 @@
 """The speech model: where it is, whether it is whole, and fetching it.
 
-The model is kept where Vosk's own users keep it, so that one that is already there is used, offline too.
-`POLARIS_NL_MODEL` names another folder. What is fetched is checked by SHA-256, unpacked beside its place and
-renamed at once, so that a fetch that is cut off leaves nothing half done.
+The model is kept where Vosk's own users keep it, so that one that is already there is used, offline
+too. `POLARIS_NL_MODEL` names another folder. What is fetched is checked by SHA-256, unpacked beside
+its place and renamed at once, so that a fetch that is cut off leaves nothing half done.
 """
 
 from __future__ import annotations
@@ -144,7 +144,8 @@ def tuned(folder: Path) -> Path:
             _link(folder.resolve(), made)
             _move_into_place(made, copy)
     except OSError:
-        # The search settings are an improvement, not a need: a cache that can't be written is no reason to fail.
+        # The search settings are an improvement, not a need: a cache that can't be
+        # written is no reason to fail.
         return folder if damage(copy) else copy
     return copy
 
@@ -180,11 +181,11 @@ def _download(archive: Path, progress: Progress) -> None:
     client = Downloader()
     address = client.resolver.uri_for_artifact(Artifact.parse(ARTIFACT))
     try:
-        with client.requestor.request(address, None, stream=True, timeout=TIMEOUT_S) as response:
-            with archive.open("wb") as file:
-                for chunk in response.iter_content(CHUNK):
-                    file.write(chunk)
-                    progress(file.tell(), SIZE)
+        answer = client.requestor.request(address, None, stream=True, timeout=TIMEOUT_S)
+        with answer as response, archive.open("wb") as file:
+            for chunk in response.iter_content(CHUNK):
+                file.write(chunk)
+                progress(file.tell(), SIZE)
     except (RequestException, ConnectionFailed) as error:
         raise SpeechError(
             "The speech model can't be fetched: there is no connection to its publisher (Maven Central). Check "
