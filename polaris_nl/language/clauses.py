@@ -102,6 +102,32 @@ class ClauseFinder:
                 if end > start:
                     yield self._clause(form, start, end, bound)
 
+    def misfits(
+        self, tokens: Sequence[str], start: int, mentions: Sequence[Sequence[Mention]]
+    ) -> Iterator[tuple[int, Mention, Sequence[str]]]:
+        """Goals that would start at a position if only types were right.
+
+        Yields:
+            Where each would end, the mention that doesn't fit, and the types that would.
+        """
+
+        def any_mention(slot: Slot, at: int) -> Iterator[tuple[int, object]]:
+            for mention in mentions[at] if at < len(mentions) else ():
+                yield mention.end, mention
+
+        for form in self._by_word.get(tokens[start], ()):
+            if form.kind != "goal":
+                continue
+            for end, bound in match(form.template, tokens, start, any_mention):
+                wrong = [
+                    (mention, form.types.get(name, ()))
+                    for name, mention in bound
+                    if isinstance(mention, Mention)
+                    and not self.fits(mention, form.types.get(name, ()))
+                ]
+                if wrong and end > start:
+                    yield end, *wrong[0]
+
     def _clause(
         self, form: _Form, start: int, end: int, bound: tuple[tuple[str, object], ...]
     ) -> Clause:

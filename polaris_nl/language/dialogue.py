@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from polaris_nl.automaton.automaton import Automaton
 from polaris_nl.language.resolve import Scope
+from polaris_nl.model.formula import literals_in
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,3 +41,16 @@ class Dialogue:
     anchor: str | None = None
     scope: Scope = Scope()
     pending: Pending | None = None
+
+
+def recalled(program: Automaton) -> Dialogue:
+    """The dialogue that a program read from a file suggests: what it is about was talked about."""
+    scope = Scope()
+    for checkpoint in program.checkpoints.values():
+        literals = [x for goal in checkpoint.goals for x in literals_in(goal)]
+        places = dict.fromkeys(arg for x in literals for arg in x.args[1:])
+        things = dict.fromkeys(arg for x in literals for arg in x.args[:1])
+        for place in places:
+            scope = scope.after((place,))
+        scope = scope.after(tuple(thing for thing in things if not thing.startswith("?")))
+    return Dialogue(scope=scope)

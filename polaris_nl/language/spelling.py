@@ -31,7 +31,7 @@ class Spelling:
                 known.update(w for t in common.templates(section, intent) for w in vocabulary(t))
         known.update(w for t in common.templates("corrections") for w in vocabulary(t))
         known.update(_all_words(common.values))
-        self._known = frozenset(known)
+        self.known = frozenset(known)
 
     def mended(self, tokens: Sequence[str], program: Automaton) -> list[str]:
         """Tokens with clear slips mended; words of checkpoint names count as known."""
@@ -40,7 +40,7 @@ class Spelling:
 
     def _mended(self, token: str, names: set[str]) -> str:
         if (
-            token in self._known
+            token in self.known
             or token in names
             or token in (BREAK, COMMA)
             or len(token) < SHORTEST
@@ -51,7 +51,7 @@ class Spelling:
         allowed = 2 if len(token) >= LONG else 1
         near = [
             word
-            for word in self._known
+            for word in self.known
             if word[:1] == token[:1]
             and len(word) >= SHORTEST
             and abs(len(word) - len(token)) <= allowed

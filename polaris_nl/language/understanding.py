@@ -9,7 +9,7 @@ from functools import cached_property
 from polaris_nl.automaton.automaton import START, Automaton
 from polaris_nl.language.changes import Changes
 from polaris_nl.language.clauses import ClauseFinder
-from polaris_nl.language.dialogue import Dialogue, Pending
+from polaris_nl.language.dialogue import Dialogue, Pending, recalled
 from polaris_nl.language.generate import read_back, steps_in_words
 from polaris_nl.language.grammar import Grammar, load_grammar
 from polaris_nl.language.interpretation import Command, Interpretation, Question, Reading, Refusal
@@ -54,7 +54,8 @@ class Understanding:
         common = self.grammar.common
         lexicon = Lexicon(world)
         self._mentions = MentionFinder(lexicon, self.grammar)
-        self._segmenter = Segmenter(common, ClauseFinder(world, self.grammar))
+        clauses = ClauseFinder(world, self.grammar)
+        self._segmenter = Segmenter(common, clauses)
         self.resolver = Resolver(world)
         self.names = Names(world, self.grammar)
         self._fillers = common.words("fillers")
@@ -63,7 +64,7 @@ class Understanding:
             for phrase_words in common.words("commands", command):
                 self._commands.setdefault(phrase_words, command)  # type: ignore[arg-type]
         self._spelling = Spelling(self.grammar, lexicon)
-        self._refusals = Refusals(world, self.grammar, lexicon, self.wording)
+        self._refusals = Refusals(world, self._spelling.known, clauses, self.wording)
         self.questions = Questions(common)
         self._edits = Patterns(common, "edits")
         self._queries = Patterns(common, "queries")
@@ -81,7 +82,7 @@ class Understanding:
             program: the program it is about.
             dialogue: what was said before.
         """
-        dialogue = dialogue or Dialogue()
+        dialogue = dialogue or recalled(program)
         if len(utterance) > LONGEST:
             return self.refused(
                 utterance[:60] + "...", "That is too long; say it in several sentences."
@@ -285,6 +286,9 @@ class Understanding:
             except Unclear:
                 continue
         unknown = self._refusals.unknown(tokens, cuts[0].unknown if cuts else tuple(tokens))
+        misfit = self._refusals.misfit(tokens, self.mentions(tokens))
+        if misfit and not any(word not in self._spelling.known for word in unknown):
+            return self.refused(utterance, misfit)
         return self.refused(utterance, self._refusals.reason(tokens, unknown, cuts), unknown)
 
     def refused(self, utterance: str, reason: str, unknown: Sequence[str] = ()) -> Interpretation:

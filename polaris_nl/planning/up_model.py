@@ -53,7 +53,7 @@ def up_plan(problem: Any, actions: Iterable[Action]) -> Any:
     instances = []
     for action in actions:
         objects = [expressions.ObjectExp(problem.object(arg)) for arg in action.args]
-        instances.append(ActionInstance(problem.action(action.operator), tuple(objects)))
+        instances.append(ActionInstance(problem.action(_do(action.operator)), tuple(objects)))
     return SequentialPlan(instances, problem.environment)
 
 
@@ -66,8 +66,6 @@ class _Builder:
         self._model = model
         # The global one: parts of unified-planning's validator use no other.
         self._environment = get_environment()
-        # In PDDL, an entity may bear the name of a predicate, such as food-station.
-        self._environment.error_used_name = False
         self._em = self._environment.expression_manager
         self._unions = _unions(world.domain)
         self._objects: dict[str, Any] = {}
@@ -79,7 +77,7 @@ class _Builder:
         boolean = self._environment.type_manager.BoolType()
         for predicate in world.domain.predicates.values():
             parameters = OrderedDict((p.name, self._type(p)) for p in predicate.parameters)
-            fluent = model.Fluent(predicate.name, boolean, parameters, self._environment)
+            fluent = model.Fluent(_is(predicate.name), boolean, parameters, self._environment)
             self._fluents[predicate.name] = problem.add_fluent(fluent, default_initial_value=False)
         for entity in world.entities.values():
             kind = self._named(planner_type(world.domain, entity.type))
@@ -90,7 +88,7 @@ class _Builder:
             problem.set_initial_value(self._expression(fact, {}), True)
         for operator in world.domain.operators.values():
             parameters = OrderedDict((p.name, self._type(p)) for p in operator.parameters)
-            action = model.InstantaneousAction(operator.name, parameters, self._environment)
+            action = model.InstantaneousAction(_do(operator.name), parameters, self._environment)
             names = {p.name: action.parameter(p.name) for p in operator.parameters}
             bound = {k: self._em.ParameterExp(v) for k, v in names.items()}
             action.add_precondition(self._expression(operator.precondition, bound))
@@ -169,7 +167,17 @@ class _Builder:
         if parent is None and name != OBJECT:
             parent = OBJECT
         above = self._named(parent) if parent is not None else None
-        return self._environment.type_manager.UserType(name, above)
+        return self._environment.type_manager.UserType(f"a {name}", above)
+
+
+# In PDDL an entity may bear the name of a predicate, such as food-station, and in unified-planning
+# it may not. No PDDL name has a space in it, so these never clash.
+def _is(predicate: str) -> str:
+    return f"is {predicate}"
+
+
+def _do(operator: str) -> str:
+    return f"do {operator}"
 
 
 def _union_name(types: Sequence[str]) -> str:

@@ -1,0 +1,107 @@
+"""The real model on real audio."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy
+import pytest
+import soundfile
+
+from polaris_nl.automaton.automaton import Automaton
+from polaris_nl.language.tokens import phrase
+from polaris_nl.language.understanding import Understanding
+from polaris_nl.model.data import data_folder
+from polaris_nl.model.errors import SpeechError
+from polaris_nl.model.world_file import load_world
+from polaris_nl.speech.audio import RATE, file_blocks
+from polaris_nl.speech.hearing import utterance
+from polaris_nl.speech.models import model_folder
+from polaris_nl.speech.recogniser import VoskModel, VoskRecogniser
+
+RECORDINGS = data_folder("domains") / "caregiving/recordings"
+SENTENCES = (
+    "tell the resident that lunch is ready",
+    "once she acknowledges bring a full tray to her table and then go home",
+    "if she dismisses it just go home",
+)
+
+
+@pytest.fixture(scope="module")
+def model() -> VoskModel:
+    return VoskModel(model_folder())
+
+
+@pytest.fixture(scope="module")
+def understanding() -> Understanding:
+    return Understanding(load_world("care-home"))
+
+
+@pytest.fixture(scope="module")
+def phrased(model: VoskModel, understanding: Understanding) -> VoskRecogniser:
+    return VoskRecogniser(model, understanding.phrases())
+
+
+def test_the_recording_is_three_sentences(
+    phrased: VoskRecogniser, understanding: Understanding
+) -> None:
+    pieces = list(phrased.hear(file_blocks(RECORDINGS / "lunch.flac")))
+    said = utterance(pieces, lambda t: understanding.parses(t, Automaton()))
+    assert said.text == ". ".join(SENTENCES)
+    assert said.accepted
+    assert 11 < said.audio_s < 14
+
+
+def test_one_breath_is_one_utterance(phrased: VoskRecogniser, understanding: Understanding) -> None:
+    pieces = list(phrased.hear(file_blocks(RECORDINGS / "lunch-in-one-breath.flac")))
+    said = utterance(pieces, lambda t: understanding.parses(t, Automaton()))
+    assert said.accepted
+    assert said.text.replace(". ", " ").split()[:7] == SENTENCES[0].split()
+
+
+def test_a_44_khz_stereo_copy_with_noise_is_heard_the_same(
+    phrased: VoskRecogniser, understanding: Understanding, tmp_path: Path
+) -> None:
+    import soxr
+
+    samples, rate = soundfile.read(RECORDINGS / "lunch.flac", dtype="float32")
+    loud = soxr.resample(samples, rate, 44_100)
+    noise = numpy.random.default_rng(1).normal(0, 0.003, len(loud)).astype("float32")
+    path = tmp_path / "stereo.wav"
+    soundfile.write(path, numpy.column_stack([loud + noise, loud]), 44_100)
+    said = utterance(
+        list(phrased.hear(file_blocks(path))), lambda t: understanding.parses(t, Automaton())
+    )
+    assert said.text == ". ".join(SENTENCES)
+
+
+def test_noise_is_nothing_and_the_terminal_stays_clean(
+    model: VoskModel,
+    phrased: VoskRecogniser,
+    understanding: Understanding,
+    tmp_path: Path,
+    capfd: pytest.CaptureFixture[str],
+) -> None:
+    noise = numpy.random.default_rng(2).normal(0, 0.01, RATE * 3).astype("float32")
+    soundfile.write(tmp_path / "noise.wav", noise, RATE)
+    pieces = list(phrased.hear(file_blocks(tmp_path / "noise.wav")))
+    free = VoskRecogniser(model)
+    said = utterance(pieces, lambda t: understanding.parses(t, Automaton()), free.words)
+    assert not said.accepted
+    assert capfd.readouterr() == ("", "")
+
+
+def test_the_lexicon_names_its_gaps(model: VoskModel) -> None:
+    assert model.missing(["bring the tray", "bring the zorblax"]) == ("zorblax",)
+
+
+@pytest.mark.parametrize("name", ["care-home", "dinner-party"])
+def test_everything_in_the_shipped_worlds_can_be_said_somehow(model: VoskModel, name: str) -> None:
+    for entity in load_world(name).entities.values():
+        names = [" ".join(phrase(text)) for text in (entity.spoken, *entity.synonyms)]
+        assert any(not model.missing([spoken]) for spoken in names), entity.name
+
+
+def test_a_folder_that_is_no_model_is_one_sentence(tmp_path: Path) -> None:
+    with pytest.raises(SpeechError, match="can't be loaded"):
+        VoskModel(tmp_path)
