@@ -16,6 +16,10 @@ MOST_DIFFERENT = 0.65
 """The most that free decoding may differ, in characters of the longer text. Measured: true commands stay below
 0.18 (clean, 95 %) and 0.50 (10 dB of noise), chatter that passed for a command is above 0.76."""
 
+SHORT = 5
+"""Words up to which a second opinion is asked. What chatter passes for is a short command amid other words;
+a longer sentence that parses strictly was meant, and decoding it again would keep the speaker waiting."""
+
 BREAK = ". "
 
 Parses = Callable[[str], bool]
@@ -54,7 +58,7 @@ def utterance(
         chosen = _with(chosen, _readable(piece), parses) or [*chosen, piece.alternatives[0]]
     text = BREAK.join(chosen)
     accepted = bool(text) and UNKNOWN not in text and parses(text)
-    if accepted and freely is not None:
+    if accepted and freely is not None and len(text.split()) <= SHORT:
         accepted = _borne_out(text, " ".join(freely(piece.audio) for piece in pieces))
     alternatives = pieces[0].alternatives if pieces else ()
     return Utterance(text, accepted, alternatives, sum(piece.seconds for piece in pieces))

@@ -1,0 +1,1 @@
+"""Speed and memory, beside the plain way of doing the same job in the same run: `make bench`."""

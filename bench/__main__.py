@@ -1,0 +1,28 @@
+"""`python -m bench [part ...]`: prints the table."""
+
+from __future__ import annotations
+
+import itertools
+import platform
+import sys
+
+from bench import command, language, planning, speech
+from bench.table import show
+
+PARTS = {"command": command, "language": language, "speech": speech, "planning": planning}
+
+
+def main() -> None:
+    """Measures the parts that are named, or all."""
+    names = sys.argv[1:] or list(PARTS)
+    unknown = [name for name in names if name not in PARTS]
+    if unknown:
+        raise SystemExit(f"bench: there is no part {unknown[0]}; parts: {', '.join(PARTS)}")
+    sys.stdout.write(
+        f"Python {platform.python_version()}, {platform.machine()}; caches warm; times in ms unless said.\n"
+    )
+    show(itertools.chain.from_iterable(PARTS[name].rows() for name in names))
+
+
+if __name__ == "__main__":
+    main()
