@@ -16,13 +16,13 @@ from polaris_nl.model.text import listed, sentence, with_article
 from polaris_nl.model.world import World
 
 _SMALL = frozenset(
-    (
-        "the a an to of on in at and or it is are be my her his its me "
-        "you i she he they them that this there with for from do not then now please just some"
-    ).split()
-)
-
-
+    {
+        "the", "a", "an", "to", "of", "on", "in", "at", "and", "or",
+        "it", "is", "are", "be", "my", "her", "his", "its", "me", "you",
+        "i", "she", "he", "they", "them", "that", "this", "there", "with", "for",
+        "from", "do", "not", "then", "now", "please", "just", "some",
+    }
+)  # fmt: skip
 NEAR = 80
 """How alike a word and a name must be, in percent, to ask whether the name was meant."""
 
