@@ -286,9 +286,9 @@ class Understanding:
             except Unclear:
                 continue
         unknown = self._refusals.unknown(tokens, cuts[0].unknown if cuts else tuple(tokens))
-        misfit = self._refusals.misfit(tokens, self.mentions(tokens))
-        if misfit and not any(word not in self._spelling.known for word in unknown):
-            return self.refused(utterance, misfit)
+        reason = self._refusals.misfit(tokens, self.mentions(tokens))
+        if reason and not any(word not in self._spelling.known for word in unknown):
+            return self.refused(utterance, reason)
         return self.refused(utterance, self._refusals.reason(tokens, unknown, cuts), unknown)
 
     def refused(self, utterance: str, reason: str, unknown: Sequence[str] = ()) -> Interpretation:

@@ -1,9 +1,9 @@
-"""From a goal automaton to a branching plan (DESIGN section 5 points 1 to 5, 7)."""
+"""From a goal automaton to a branching plan (DESIGN section 5 points 1 to 7)."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from dataclasses import dataclass, field
 
 from polaris_nl.automaton.automaton import START, Automaton, Checkpoint, Transition
@@ -14,18 +14,36 @@ from polaris_nl.model.formula import And, Formula, Imply, Literal, Quantified, b
 from polaris_nl.model.state import Mutexes, State
 from polaris_nl.model.wording import Wording
 from polaris_nl.model.world import World
+from polaris_nl.planning.ahead import BUDGET_S as AHEAD_S
+from polaris_nl.planning.ahead import other_ways
 from polaris_nl.planning.problems import Diagnosis, Place, inside, without_a_way
 from polaris_nl.planning.result import BranchingPlan, Problem, Segment, Status, Warning
 from polaris_nl.planning.segments import SegmentResult, Segments
 from polaris_nl.planning.tree import plan_tree
 from polaris_nl.planning.warnings import warnings_of
 
+MOST_DETOURS = 3
+"""Dead ends of one program that are planned around."""
+LOOK_BACK = 3
+"""Segments before a failed one that may be planned another way."""
+
 
 @dataclass
 class _Work:
     segments: dict[str, Segment] = field(default_factory=dict)
     problems: list[Problem] = field(default_factory=list)
+    notes: list[Warning] = field(default_factory=list)
     cancelled: bool = False
+
+    def own_problems(self) -> int:
+        """How many checkpoints fail by themselves, not because of one above them."""
+        return sum(p.cause != "inside" for p in self.problems)
+
+    def without(self, checkpoints: Collection[str]) -> _Work:
+        """A copy in which some checkpoints are still to be planned."""
+        segments = {k: s for k, s in self.segments.items() if k not in checkpoints}
+        problems = [p for p in self.problems if p.checkpoint not in checkpoints]
+        return _Work(segments, problems, list(self.notes))
 
 
 class Compiler:
@@ -64,7 +82,12 @@ class Compiler:
         if no_goals:
             return BranchingPlan("invalid", {}, None, no_goals, (), _ms(started))
         work = _Work()
-        self._walk(automaton, work, cancelled)
+        self._walk(automaton, ((START, self._world.initial),), work, cancelled)
+        for _ in range(MOST_DETOURS):
+            better = self._detour(automaton, work, cancelled)
+            if better is None:
+                break
+            work = better
         tree = plan_tree(automaton, work.segments, self._world)
         warnings = self._warnings(automaton, work)
         status = _status(work)
@@ -72,8 +95,15 @@ class Compiler:
             status, work.segments, tree, tuple(work.problems), warnings, _ms(started)
         )
 
-    def _walk(self, automaton: Automaton, work: _Work, cancelled: Callable[[], bool]) -> None:
-        waiting = [(t, self._world.initial) for t in reversed(automaton.outgoing(START))]
+    def _walk(
+        self,
+        automaton: Automaton,
+        starts: Iterable[tuple[str, State]],
+        work: _Work,
+        cancelled: Callable[[], bool],
+    ) -> None:
+        """Plans everything below some checkpoints, each with the state that it ends in."""
+        waiting = [(t, state) for c, state in starts for t in reversed(automaton.outgoing(c))]
         while waiting:
             transition, before = waiting.pop()
             if cancelled():
@@ -89,6 +119,68 @@ class Compiler:
                 continue
             work.segments[checkpoint.id] = segment
             waiting.extend((t, segment.after) for t in reversed(automaton.outgoing(checkpoint.id)))
+
+    def _detour(
+        self, automaton: Automaton, work: _Work, cancelled: Callable[[], bool]
+    ) -> _Work | None:
+        """The work with another way through an earlier segment, where that lets a later one succeed."""
+        for problem in work.problems:
+            if problem.cause not in ("unreachable", "conflict") or problem.checkpoint is None:
+                continue
+            for earlier in self._to_blame(automaton, problem.checkpoint, work, cancelled):
+                for way in other_ways(earlier, self._segments, cancelled):
+                    better = self._retried(automaton, earlier, way, work, cancelled)
+                    if better is not None:
+                        better.notes.append(self._note(automaton, earlier, problem.checkpoint))
+                        return better
+        return None
+
+    def _to_blame(
+        self, automaton: Automaton, failed: str, work: _Work, cancelled: Callable[[], bool]
+    ) -> Iterator[Segment]:
+        """Earlier segments, the nearest first, before which the failed goals could still be reached."""
+        transition = automaton.incoming(failed)
+        checkpoint = automaton.parent(failed)
+        for _ in range(LOOK_BACK):
+            earlier = work.segments.get(checkpoint or "")
+            if transition is None or earlier is None:
+                return
+            if earlier.actions and not cancelled():
+                state = earlier.before.after_event(transition.when, self._mutexes)
+                goals = ground_goals(automaton.checkpoints[failed].goals, state, self._world)
+                result = self._segments.solve(state, goals, AHEAD_S, cancelled)
+                if result.status == "solved":
+                    yield earlier
+            checkpoint = automaton.parent(earlier.target)
+
+    def _retried(
+        self,
+        automaton: Automaton,
+        earlier: Segment,
+        way: SegmentResult,
+        work: _Work,
+        cancelled: Callable[[], bool],
+    ) -> _Work | None:
+        if way.actions == earlier.actions:
+            return None
+        trial = work.without(automaton.subtree(earlier.target))
+        transition = automaton.transitions[earlier.transition]
+        checkpoint = automaton.checkpoints[earlier.target]
+        shortest = earlier.optimal and len(way.actions) == len(earlier.actions)
+        made = SegmentResult("solved", way.actions, shortest)
+        segment = self._made(transition, checkpoint, earlier.before, earlier.goals, made)
+        trial.segments[checkpoint.id] = segment
+        self._walk(automaton, ((checkpoint.id, segment.after),), trial, cancelled)
+        better = not trial.cancelled and trial.own_problems() < work.own_problems()
+        return trial if better else None
+
+    def _note(self, automaton: Automaton, earlier: Segment, failed: str) -> Warning:
+        names = automaton.checkpoints
+        text = (
+            f"On the way to {names[earlier.target].name} I plan ahead: the first way that I found would have "
+            f"kept me from {names[failed].name}."
+        )
+        return Warning(text, earlier.transition)
 
     def _segment(
         self,
@@ -178,7 +270,8 @@ class Compiler:
 
     def _warnings(self, automaton: Automaton, work: _Work) -> tuple[Warning, ...]:
         states = {START: self._world.initial, **{k: s.after for k, s in work.segments.items()}}
-        return warnings_of(automaton, states, self._mutexes, self._world, self._wording)
+        found = warnings_of(automaton, states, self._mutexes, self._world, self._wording)
+        return (*work.notes, *found)
 
 
 def _no_goals(automaton: Automaton) -> Iterator[Problem]:

@@ -76,6 +76,14 @@ class Told:
         return found
 
 
+class BoundedClock(VirtualClock):
+    """Virtual time that ends, so that a run without an end fails instead of hanging."""
+
+    def sleep(self, seconds: float) -> None:
+        super().sleep(seconds)
+        assert self.now() < T0 + 5000.0, "the run doesn't end"
+
+
 Commands = Callable[[float], Iterable[HumanCommand]]
 """What people command, asked once a tick with the seconds since the start."""
 
@@ -120,7 +128,7 @@ def carry_out(
 ) -> Told:
     """Runs a case in virtual time to its end."""
     events: list[Event] = []
-    clock = VirtualClock(T0)
+    clock = BoundedClock(T0)
     how = SimulationSettings(people=people, seed=seed, human_s=human_s)
     robot = SpiedRobot(case, settings=how, faults=faults, sink=events.append)
     result = run(

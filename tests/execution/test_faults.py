@@ -250,6 +250,26 @@ def test_what_a_person_says_happened_is_no_perceived_goal(care: Planner) -> None
     assert halted(told).expected == ["(at cup desk)"]
 
 
+def test_what_a_person_says_happened_serves_one_transition_only(care: Planner) -> None:
+    cup = ("(at cup desk)",)
+    steps = case(
+        care,
+        ("start", "alerted", (), ("(alerted-to resident lunchtime)",)),
+        ("alerted", "hall", cup, ("(robot-at hall)",)),
+        ("hall", "home", cup, ("(robot-at home)",)),
+    )
+    claim = HumanCommand("happened", literals(*cup))
+    told = carry_out(
+        steps,
+        moved(60.0, *cup),
+        commands=lambda seconds: [claim] if 3.0 <= seconds < 3.1 else [],
+    )
+    first, second = (t for t in told.of(TransitionTaken) if t.when)
+    assert first.time < T0 + 20.0
+    assert second.time == pytest.approx(T0 + 60.0, abs=1.0)
+    assert told.result.outcome == "done"
+
+
 # Stop and pause, at every moment
 
 

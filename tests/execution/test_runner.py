@@ -29,13 +29,13 @@ from polaris_nl.execution.simulation import Fault
 from polaris_nl.logs.review import story
 from polaris_nl.model.errors import RunError
 from polaris_nl.planning.planner import Planner
-from tests.execution.story import T0, Case, SpiedRobot, carry_out, literals
+from tests.execution.story import T0, BoundedClock, Case, SpiedRobot, carry_out, literals
 
 
 def refused(case: Case, confirmed: bool) -> tuple[str, SpiedRobot, list[Event]]:
     robot, events = SpiedRobot(case), list[Event]()
     with pytest.raises(RunError) as error:
-        run(case.run_plan(), robot, VirtualClock(T0), confirmed=confirmed, sink=events.append)
+        run(case.run_plan(), robot, BoundedClock(T0), confirmed=confirmed, sink=events.append)
     return str(error.value), robot, events
 
 
@@ -143,7 +143,7 @@ def test_the_story_tells_goals_transitions_and_the_end(serve: Case) -> None:
 def test_whatever_breaks_the_run_leaves_the_robot_standing(
     serve: Case, error: type[BaseException], where: str
 ) -> None:
-    robot, clock = SpiedRobot(serve), VirtualClock(T0)
+    robot, clock = SpiedRobot(serve), BoundedClock(T0)
 
     def late(result: Callable[[], tuple[()]]) -> tuple[()]:
         if clock.now() >= T0 + 6.0:

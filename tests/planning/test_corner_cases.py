@@ -136,7 +136,6 @@ def test_6_a_greedy_dead_end_is_not_called_a_conflict(make_world: MakeWorld) -> 
         assert {p.cause for p in plan.problems} <= {"unreachable"}
 
 
-@pytest.mark.xfail(reason="planning ahead over a branch (DESIGN section 5 point 6) is not there")
 def test_6_a_greedy_dead_end_is_avoided(make_world: MakeWorld) -> None:
     plans = [shop(make_world, way_back).compile(TEA) for way_back in ("left", "right")]
     assert [plan.status for plan in plans] == ["ok", "ok"]

@@ -444,6 +444,25 @@ def test_edits_quicker_than_planning_cancel_the_older_work(
     assert [e.revision for e in session.events if isinstance(e, Planned)] == [4]
 
 
+def test_a_plan_that_is_made_just_too_late_is_thrown_away(
+    session: Watched, planner: Planner, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    session.planner = gated = GatedPlanner(planner)  # type: ignore[assignment, misc]
+    # The edit falls between the planning thread's look at the time and its publishing.
+    monkeypatch.setattr(session._replanner, "_stale", lambda revision: False)
+    add(session, TABLE)
+    assert gated.entered.acquire(timeout=LIMIT_S)
+    add(session, "(robot-at home)")
+    gated.gate.set()
+    session.until_told(2)
+    assert [(s.revision, s.planning) for s in session.told] == [
+        (1, "planning"),
+        (2, "planning"),
+        (2, "planned"),
+    ]
+    assert [e.revision for e in session.events if isinstance(e, Planned)] == [2]
+
+
 def test_the_final_plan_belongs_to_the_final_revision(session: Watched, planner: Planner) -> None:
     places = ("(robot-at hall)", "(at cup desk)", "(robot-at home)", "(open fridge)")
     for n in range(24):
