@@ -10,10 +10,10 @@ from polaris_nl.automaton.automaton import Automaton
 from polaris_nl.automaton.program import Program, program_json
 from polaris_nl.execution.clock import Clock, RealClock, VirtualClock
 from polaris_nl.execution.events import Event, Heard, Planned, Understood
-from polaris_nl.execution.executor import HumanCommand, RunPlan
 from polaris_nl.execution.runner import RunResult, run
 from polaris_nl.execution.settings import RunSettings
 from polaris_nl.execution.simulation import SimulatedRobot, SimulationSettings
+from polaris_nl.execution.state import HumanCommand, RunPlan
 from polaris_nl.logs.paths import new_log_path
 from polaris_nl.logs.writer import LogWriter, attachments_of
 from polaris_nl.planning.plan_json import plan_json

@@ -20,8 +20,8 @@ from polaris_nl.commands.common import (
     width,
 )
 from polaris_nl.execution.events import Event, GoalConfirmed
-from polaris_nl.execution.executor import HumanCommand
 from polaris_nl.execution.runner import objectives_met
+from polaris_nl.execution.state import HumanCommand
 from polaris_nl.language.understanding import Understanding
 from polaris_nl.model.errors import RunError, UsageError, did_you_mean
 from polaris_nl.model.world import World

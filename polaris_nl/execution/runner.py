@@ -9,14 +9,8 @@ from polaris_nl.automaton.program import Program, program_json
 from polaris_nl.execution.backend import Observation, Robot, StopRobot
 from polaris_nl.execution.clock import Clock
 from polaris_nl.execution.events import Event, Observed, RunEnded, RunStarted
-from polaris_nl.execution.executor import (
-    TERMINAL,
-    ExecutorState,
-    HumanCommand,
-    Inputs,
-    RunPlan,
-    step,
-)
+from polaris_nl.execution.executor import step
+from polaris_nl.execution.state import TERMINAL, ExecutorState, HumanCommand, Inputs, RunPlan
 from polaris_nl.model.errors import RunError
 from polaris_nl.model.evaluate import holds
 from polaris_nl.model.state import State

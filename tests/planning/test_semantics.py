@@ -10,6 +10,7 @@ from polaris_nl.automaton.edits import apply_all
 from polaris_nl.model.evaluate import after, applicable
 from polaris_nl.model.formula import Literal
 from polaris_nl.model.world import World
+from polaris_nl.planning.pddl_text import problem_text
 from polaris_nl.planning.planner import Planner
 from polaris_nl.planning.result import BranchingPlan
 
@@ -90,6 +91,8 @@ def test_the_order_of_a_worlds_file_means_nothing(care_home: Planner) -> None:
     served = program("x: (at cup table) (at red-cup table) (at glasses desk) (robot-at home)")
     one, two = (Planner(w).compile(served).segments["c1"] for w in (world, turned))
     assert one.actions == two.actions
+    text = problem_text(world, world.initial, one.goals)
+    assert problem_text(turned, turned.initial, one.goals) == text
 
 
 def test_an_action_the_user_insists_on_comes_last(care_home: Planner) -> None:
