@@ -67,7 +67,9 @@ def test_say_without_a_program_changes_no_file(command: Command, tmp_path: Path)
 
 def test_dialogue_prints_one_object_a_line_and_ignores_blank_ones(tmp_path: Path) -> None:
     path = tmp_path / "tidy.json"
-    said = "\n\n".join((*TIDY, "what will you do?", "run it", "yes", "save", "frobnicate the plate"))
+    said = "\n\n".join(
+        (*TIDY, "what will you do?", "run it", "yes", "save", "frobnicate the plate")
+    )
     result = process(
         "dialogue", "--json", "--world", "dinner-party", "--program", path, stdin=said.encode()
     )

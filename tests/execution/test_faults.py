@@ -15,7 +15,7 @@ from polaris_nl.execution.events import (
     RobotReported,
     TransitionTaken,
 )
-from polaris_nl.execution.executor import HumanCommand
+from polaris_nl.execution.state import HumanCommand
 from polaris_nl.execution.settings import RunSettings
 from polaris_nl.execution.simulation import Fault
 from polaris_nl.planning.planner import Planner

@@ -23,7 +23,7 @@ from polaris_nl.execution.events import (
     RunStarted,
     StateChanged,
 )
-from polaris_nl.execution.executor import HumanCommand
+from polaris_nl.execution.state import HumanCommand
 from polaris_nl.execution.runner import run
 from polaris_nl.execution.simulation import Fault
 from polaris_nl.logs.review import story
