@@ -86,6 +86,8 @@ class Compiler:
         for _ in range(MOST_DETOURS):
             better = self._detour(automaton, work, cancelled)
             if better is None:
+                # A problem that planning ahead might have solved is none yet.
+                work.cancelled = work.cancelled or (bool(work.problems) and cancelled())
                 break
             work = better
         tree = plan_tree(automaton, work.segments, self._world)
@@ -145,7 +147,8 @@ class Compiler:
             earlier = work.segments.get(checkpoint or "")
             if transition is None or earlier is None:
                 return
-            if earlier.actions and not cancelled():
+            insisted = automaton.checkpoints[earlier.target].action is not None
+            if earlier.actions and not insisted and not cancelled():
                 state = earlier.before.after_event(transition.when, self._mutexes)
                 goals = ground_goals(automaton.checkpoints[failed].goals, state, self._world)
                 result = self._segments.solve(state, goals, AHEAD_S, cancelled)

@@ -32,7 +32,7 @@ class Planner:
         self.world = world
         self.wording: Wording = wording or PlainWording(world)
         self.mutexes: Mutexes = find_mutexes(world)
-        self._segments = Segments(world)
+        self._segments = Segments(world, self.mutexes)
         self._compiler = Compiler(world, self.mutexes, self._segments, self.wording)
 
     def compile(self, automaton: Automaton, cancelled: Callable[[], bool] = never) -> BranchingPlan:

@@ -13,9 +13,10 @@ from polaris_nl.automaton.program import parse_action
 from polaris_nl.model.domain import Action
 from polaris_nl.model.errors import PlanningError
 from polaris_nl.model.formula import Formula
-from polaris_nl.model.state import State
+from polaris_nl.model.state import Mutexes, State
 from polaris_nl.model.world import World
 from polaris_nl.planning.pddl_text import domain_text, problem_text
+from polaris_nl.planning.projection import Projection
 from polaris_nl.planning.search import OPTIMAL, OPTIMAL_ANY, QUICK, Found, search
 from polaris_nl.planning.translate import Task, translate
 
@@ -48,10 +49,15 @@ class SegmentResult:
 
 
 class Segments:
-    """Plans segments in one world and remembers them."""
+    """Plans segments in one world and remembers them.
 
-    def __init__(self, world: World) -> None:
-        self._world = world
+    Args:
+        world: the world.
+        mutexes: what excludes what in it; without, tasks are planned whole.
+    """
+
+    def __init__(self, world: World, mutexes: Mutexes | None = None) -> None:
+        self._projection = Projection(world, mutexes or Mutexes())
         self._domain = domain_text(world.domain)
         self._known: OrderedDict[tuple[State, frozenset[Formula]], SegmentResult] = OrderedDict()
         self._lock = Lock()
@@ -91,7 +97,8 @@ class Segments:
     ) -> SegmentResult:
         deadline = time.monotonic() + budget_s
         try:
-            task = translate(self._domain, problem_text(self._world, state, goals))
+            world, start = self._projection.of(state, goals)
+            task = translate(self._domain, problem_text(world, start, goals))
             if not task.sas:
                 return SegmentResult("unsolvable")
             return self._search(task, budget_s, deadline, cancelled)

@@ -116,9 +116,9 @@ def test_5_checkpoints_that_cost_nothing_keep_their_plan_node(care_home: Planner
     assert plan.action_count == 1
 
 
-def shop(make_world: MakeWorld, way_back: str) -> Planner:
-    """Tea is sold left and right, and only one of the two has a way back home."""
-    ways = ["(way home left)", "(way home right)", f"(way {way_back} home)"]
+def shop(make_world: MakeWorld, *ways_back: str) -> Planner:
+    """Tea is sold left and right, and only some of the two have a way back home."""
+    ways = ["(way home left)", "(way home right)", *(f"(way {back} home)" for back in ways_back)]
     at_first = ["(robot-at home)", "(sells left)", "(sells right)", *ways]
     entities = ["home region", "left region", "right region"]
     return Planner(make_world(SHOPPING, entities, at_first))
@@ -127,18 +127,54 @@ def shop(make_world: MakeWorld, way_back: str) -> Planner:
 TEA = program("bought: (tea)", "home: (robot-at home)")
 
 
-def test_6_a_greedy_dead_end_is_not_called_a_conflict(make_world: MakeWorld) -> None:
-    plans = [shop(make_world, way_back).compile(TEA) for way_back in ("left", "right")]
+def test_6_a_greedy_dead_end_is_avoided_and_said(make_world: MakeWorld) -> None:
     # Whichever shop is nearer to the planner, the trap is behind one of the two doors.
-    assert {len(plan.segments["c1"].actions) for plan in plans} == {2}
-    assert all(plan.segments["c1"].optimal for plan in plans)
-    for plan in plans:
-        assert {p.cause for p in plan.problems} <= {"unreachable"}
-
-
-def test_6_a_greedy_dead_end_is_avoided(make_world: MakeWorld) -> None:
     plans = [shop(make_world, way_back).compile(TEA) for way_back in ("left", "right")]
     assert [plan.status for plan in plans] == ["ok", "ok"]
+    assert [actions(plan.segments["c1"]) for plan in plans] == [
+        ["(go home left)", "(buy left)"],
+        ["(go home right)", "(buy right)"],
+    ]
+    # As short as the way into the trap, and so still a shortest one.
+    assert all(plan.segments["c1"].optimal for plan in plans)
+    (note,) = [w for plan in plans for w in plan.warnings]
+    assert note.transition == "t1"
+    assert note.text.startswith("On the way to bought I plan ahead")
+    assert "kept me from home" in note.text
+
+
+def test_6_no_way_around_a_dead_end_is_not_called_a_conflict(make_world: MakeWorld) -> None:
+    plan = shop(make_world).compile(TEA)
+    assert plan.status == "partial"
+    assert list(plan.segments) == ["c1"]
+    assert (only_problem(plan).checkpoint, only_problem(plan).cause) == ("c2", "unreachable")
+    assert plan.warnings == ()
+
+
+def test_6_an_action_the_user_insists_on_is_never_planned_around(make_world: MakeWorld) -> None:
+    plan = shop(make_world, "right").compile(
+        program("bought: !(buy left)", "home: (robot-at home)")
+    )
+    assert actions(plan.segments["c1"]) == ["(go home left)", "(buy left)"]
+    assert (only_problem(plan).checkpoint, only_problem(plan).cause) == ("c2", "unreachable")
+
+
+def test_6_planning_ahead_breaks_nothing_beside_it(make_world: MakeWorld) -> None:
+    for way_back in ("left", "right"):
+        plan = shop(make_world, way_back).compile(
+            program(
+                "bought: (tea)",
+                "bought -> home [(sells home)]: (robot-at home)",
+                "again: (robot-at left)",
+                "bought -> stay: (tea)",
+            )
+        )
+        assert plan.status == "ok"
+        before = {"c0": plan.root.state if plan.root else None}
+        for checkpoint, segment in plan.segments.items():
+            assert segment.before.facts >= before[segment.source].facts
+            before[checkpoint] = segment.after
+        assert len([n for n in plan.nodes() if n.checkpoint]) == 5
 
 
 COINS = """(define (domain coins)

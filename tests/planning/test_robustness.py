@@ -20,7 +20,7 @@ from polaris_nl.planning.plan_json import plan_json
 from polaris_nl.planning.planner import Planner
 from polaris_nl.planning.search import Found
 
-from .conftest import LUNCH, facts, only_problem, program
+from .conftest import LUNCH, SHOPPING, MakeWorld, facts, only_problem, program
 
 WALK = program("a: (robot-at hall)", "b: (robot-at home)", "c: (robot-at kitchen)")
 HELD = facts("(holding cup)")
@@ -89,6 +89,20 @@ def test_a_stale_compile_is_undecided_even_after_a_problem(fresh: Planner) -> No
     )
     assert fresh.compile(automaton, stale_after(2)).status == "undecided"
     assert fresh.compile(automaton).status == "partial"
+
+
+def test_a_stale_compile_never_passes_for_a_finished_one(make_world: MakeWorld) -> None:
+    ways = ["(way home left)", "(way home right)"]
+    for back in ("left", "right"):  # One of them needs planning ahead, whichever it is.
+        at_first = ["(robot-at home)", "(sells left)", "(sells right)", f"(way {back} home)"]
+        world = make_world(
+            SHOPPING, ["home region", "left region", "right region"], [*at_first, *ways]
+        )
+        automaton = program("bought: (tea)", "home: (robot-at home)")
+        found = [Planner(world).compile(automaton, stale_after(n)).status for n in range(16)]
+        finished = found.index("ok")
+        assert finished > 1
+        assert found == ["undecided"] * finished + ["ok"] * (16 - finished)
 
 
 def test_cancelling_ends_a_running_search(fresh: Planner, fake_binary: FakeBinary) -> None:
@@ -259,7 +273,7 @@ def test_a_missing_search_program_is_said_in_one_sentence(
 def crowded() -> Iterator[None]:
     """Threads take turns as often as they can."""
     before = sys.getswitchinterval()
-    sys.setswitchinterval(1e-6)
+    sys.setswitchinterval(1e-5)
     yield
     sys.setswitchinterval(before)
 
@@ -290,7 +304,7 @@ def test_one_translation_runs_at_a_time(
 @pytest.mark.usefixtures("crowded")
 def test_four_threads_get_what_one_gets(care_home: Planner) -> None:
     """UP's own engine gave 23 wrong answers of 40 here (facts/planning.md)."""
-    places = ["table", "desk", "nightstand"]
+    places = ["table", "desk"]
     programs = [
         program(f"served: (at cup {place})", "home: (robot-at home)", "both: (holding red-cup)")
         for place in places
