@@ -52,6 +52,8 @@ def change_in_words(
 def _size(before: BranchingPlan | None, after: BranchingPlan) -> str:
     if after.problems:
         return sentence(f"still open: {after.problems[0].text}")
+    if not after.segments:
+        return "The program is empty now."
     count = after.action_count
     if before is not None and before.problems:
         return f"That mends it: the whole program can be done, in {_actions(count)}."

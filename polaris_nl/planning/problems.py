@@ -127,7 +127,7 @@ class Diagnosis:
         first, group = next(iter(cores.items()))
         facts = listed([self._wording.fact(goal) for goal in first])
         why = self._reason(first, group)
-        text = f"{place.checkpoint.name} can't be done: it can't be that {facts} at once{why}."
+        text = f"I can't do \"{place.checkpoint.name}\": it can't be that {facts} at once{why}."
         repairs = self._repairs.for_conflict(
             place.automaton, place.checkpoint, place.state, place.goals, first, cancelled
         )
@@ -173,7 +173,7 @@ class Diagnosis:
         else:
             why = f"nothing can change whether {fact}"
             way = "Leave it out."
-        cannot = sentence(f"{place.checkpoint.name} can't be done: {why}")
+        cannot = sentence(f'I can\'t do "{place.checkpoint.name}": {why}')
         text = f"{cannot} {way}"
         return Problem(
             "unreachable", text, place.checkpoint.id, place.transition.id, ((goal,),), repairs
@@ -188,7 +188,7 @@ class Diagnosis:
 
 def inside(checkpoint: Checkpoint, transition: Transition | None, omitted: Checkpoint) -> Problem:
     """The problem of a checkpoint that comes after one that is left out."""
-    text = f"{checkpoint.name} waits for {omitted.name}, which can't be done."
+    text = f'"{checkpoint.name}" waits for "{omitted.name}", which I can\'t do.'
     return Problem("inside", sentence(text), checkpoint.id, transition.id if transition else None)
 
 
@@ -201,7 +201,7 @@ def without_a_way(
 ) -> Problem:
     """The problem of an action that the user insists on and that can't be done there."""
     if result.status == "unsolvable":
-        text = f"{checkpoint.name} can't be done: there is no way to {wording.action(action)} then."
+        text = f'I can\'t do "{checkpoint.name}": there is no way to {wording.action(action)} then.'
         text = f"{sentence(text)} Say what it is for instead."
         return Problem("unreachable", text, checkpoint.id, transition.id)
     text = f"For {checkpoint.name}: {result.reason or 'The planning was broken off.'}"

@@ -51,7 +51,11 @@ def wrapped(
     """
     rest = " " * len(first) if rest is None else rest
     lines = textwrap.wrap(
-        plain(text), max(width, len(rest) + 20), initial_indent=first, subsequent_indent=rest
+        plain(text),
+        max(width, len(rest) + 20),
+        initial_indent=first,
+        subsequent_indent=rest,
+        break_on_hyphens=False,
     )
     shown = (line.replace(NO_BREAK, " ") for line in lines or [first.rstrip()])
     return [Row(line, tone, checkpoint, action) for line in shown]

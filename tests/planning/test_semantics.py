@@ -283,7 +283,7 @@ def test_only_the_subtree_is_left_out(care_home: Planner) -> None:
         ("c3", "inside"),
         ("c4", "inside"),
     ]
-    assert "waits for both" in plan.problems[2].text
+    assert 'waits for "both"' in plan.problems[2].text
     assert {n.checkpoint for n in plan.nodes() if n.checkpoint} == {"c0", "c1", "c5"}
 
 
