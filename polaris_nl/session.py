@@ -8,14 +8,12 @@ first, and what a newer revision makes stale is cancelled. Everything that happe
 
 from __future__ import annotations
 
-import threading
 import time
-from collections import deque
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from polaris_nl.answers import STILL_PLANNING, answer_query, change_in_words, run_in_words
 from polaris_nl.automaton.automaton import Automaton
@@ -29,6 +27,7 @@ from polaris_nl.model.errors import FileError, PolarisError
 from polaris_nl.model.wording import Wording
 from polaris_nl.model.world import World
 from polaris_nl.planning.result import BranchingPlan
+from polaris_nl.publishing import Publisher, Subscriber
 from polaris_nl.replanning import Replanner
 from polaris_nl.snapshot import Answer, Planning, Snapshot, answer_json
 
@@ -39,8 +38,6 @@ if TYPE_CHECKING:
 
 PLAN_WAIT_S = 10.0
 """How long an answer waits for its plan before it says that planning goes on."""
-
-Subscriber = Callable[[Snapshot], None]
 
 
 class Session:
@@ -70,11 +67,7 @@ class Session:
         self._dialogue: Dialogue | None = None
         self._run_echoed = False
         self._last_say = ""
-        self._snapshot = Snapshot(automaton=self._history.present)
-        self._subscribers: list[Subscriber] = []
-        self._untold: deque[Snapshot] = deque()
-        self._telling = False
-        self._changed = threading.Condition()
+        self._publisher = Publisher(Snapshot(automaton=self._history.present))
         self._replanner = Replanner(
             lambda automaton, stale: self.planner.compile(automaton, stale), self._publish_plan
         )
@@ -103,12 +96,12 @@ class Session:
     @property
     def snapshot(self) -> Snapshot:
         """Program and plan now."""
-        return self._snapshot
+        return self._publisher.snapshot
 
     @property
     def program(self) -> Program:
         """The program now, with the names of its domain and world."""
-        return self.program_of(self._snapshot.automaton)
+        return self.program_of(self._publisher.snapshot.automaton)
 
     def program_of(self, automaton: Automaton) -> Program:
         """An automaton as a program of this world."""
@@ -120,8 +113,7 @@ class Session:
         Returns:
             A function that ends the subscription.
         """
-        self._subscribers.append(subscriber)
-        return lambda: self._subscribers.remove(subscriber)
+        return self._publisher.subscribe(subscriber)
 
     def say(self, utterance: str, wait_s: float = PLAN_WAIT_S, source: str = "typed") -> Answer:
         """Interprets an utterance, carries it out, and answers.
@@ -137,13 +129,15 @@ class Session:
         self._dialogue = dialogue
         failure, confirmed = "", False
         was_echoed, self._run_echoed = self._run_echoed, False
-        before = self._snapshot
+        before = self._publisher.snapshot
         if interpretation.edits:
             failure = self._do(interpretation.edits, interpretation.say)
         if interpretation.command is not None:
             interpretation, failure = self._carry_out(interpretation)
             confirmed = was_echoed and interpretation.command == "yes"
-        snapshot = self.wait(wait_s) if self._needs_plan(interpretation) else self._snapshot
+        snapshot = (
+            self.wait(wait_s) if self._needs_plan(interpretation) else self._publisher.snapshot
+        )
         text = self._words(interpretation, before, snapshot, was_echoed)
         if interpretation.command != "repeat":
             self._last_say = text
@@ -154,13 +148,15 @@ class Session:
 
     def parses(self, utterance: str) -> bool:
         """Whether an utterance would be understood now: anything but a refusal. Changes nothing."""
-        return self.understanding.parses(utterance, self._snapshot.automaton, self._dialogue)
+        return self.understanding.parses(
+            utterance, self._publisher.snapshot.automaton, self._dialogue
+        )
 
     def begin_again(self, automaton: Automaton) -> None:
         """Goes back to a program, as if nothing had been said: for utterances that are independent."""
         self._dialogue = None
         self._run_echoed = False
-        if automaton != self._snapshot.automaton:
+        if automaton != self._publisher.snapshot.automaton:
             self._do((ReplaceProgram(automaton),), "begin again")
 
     def edit(self, edits: Iterable[Edit], label: str) -> str:
@@ -184,15 +180,17 @@ class Session:
 
     def wait(self, seconds: float = PLAN_WAIT_S) -> Snapshot:
         """Waits until the present revision is planned, or for some seconds; returns the snapshot then."""
-        self._replanner.request(self._snapshot.revision, self._snapshot.automaton)
-        with self._changed:
-            self._changed.wait_for(lambda: self._snapshot.planning != "planning", seconds)
-            return self._snapshot
+        self._replanner.request(
+            self._publisher.snapshot.revision, self._publisher.snapshot.automaton
+        )
+        return self._publisher.wait(lambda snapshot: snapshot.planning != "planning", seconds)
 
     def warm_up(self) -> None:
         """Loads language and planner, so that the first sentence is answered as quickly as the second."""
-        self.understanding.interpret("help", self._snapshot.automaton)
-        self._replanner.request(self._snapshot.revision, self._snapshot.automaton)
+        self.understanding.interpret("help", self._publisher.snapshot.automaton)
+        self._replanner.request(
+            self._publisher.snapshot.revision, self._publisher.snapshot.automaton
+        )
 
     def close(self) -> None:
         """Ends the planning thread; a search that is under way is killed."""
@@ -208,8 +206,10 @@ class Session:
 
     def _interpret(self, utterance: str) -> tuple[Interpretation, Dialogue]:
         if self._dialogue is None:
-            return self.understanding.interpret(utterance, self._snapshot.automaton)
-        return self.understanding.interpret(utterance, self._snapshot.automaton, self._dialogue)
+            return self.understanding.interpret(utterance, self._publisher.snapshot.automaton)
+        return self.understanding.interpret(
+            utterance, self._publisher.snapshot.automaton, self._dialogue
+        )
 
     def _carry_out(self, interpretation: Interpretation) -> tuple[Interpretation, str]:
         """Does what a command asks of the session; what it asks of the face is left to the face."""
@@ -222,7 +222,7 @@ class Session:
                 said = f"There is nothing to {command}." if label is None else f"{done}: {label}"
                 return replace(interpretation, say=said), failure
             case "new":
-                if len(self._snapshot.automaton.checkpoints) == 1:
+                if len(self._publisher.snapshot.automaton.checkpoints) == 1:
                     return replace(interpretation, say="The program is empty already."), ""
                 failure = self._do((ReplaceProgram(Automaton()),), "start over")
                 return replace(
@@ -331,17 +331,14 @@ class Session:
         return ""
 
     def _publish_program(self, label: str, edits: tuple[Edit, ...]) -> None:
-        with self._changed:
-            self._set(
-                revision=self._snapshot.revision + 1,
-                automaton=self._history.present,
-                planning="planning",
-                failure="",
-                undoable=tuple(step.label for step in self._history.past),
-                redoable=tuple(step.label for step, _ in self._history.future),
-            )
-            snapshot = self._snapshot
-            self._run_echoed = False  # The yes would be to another program than the one read out.
+        self._run_echoed = False  # The yes would be to another program than the one read out.
+        snapshot = self._publisher.next_revision(
+            automaton=self._history.present,
+            planning="planning",
+            failure="",
+            undoable=tuple(step.label for step in self._history.past),
+            redoable=tuple(step.label for step, _ in self._history.future),
+        )
         self._sink(
             Edited(
                 time=self._now(),
@@ -352,44 +349,18 @@ class Session:
                 program=program_json(self.program),
             )
         )
-        self._tell()
+        self._publisher.tell()
         self._replanner.request(snapshot.revision, snapshot.automaton)
-
-    def _set(self, **changes: Any) -> None:
-        self._snapshot = replace(self._snapshot, **changes)
-        self._untold.append(self._snapshot)
-        self._changed.notify_all()
-
-    def _tell(self) -> None:
-        """Tells the snapshots in the order they were made: one thread at a time, holding no lock."""
-        with self._changed:
-            if self._telling:
-                return  # Whoever is telling now goes on with them.
-            self._telling = True
-        while True:
-            with self._changed:
-                if not self._untold:
-                    self._telling = False
-                    return
-                snapshot = self._untold.popleft()
-            try:
-                for subscriber in tuple(self._subscribers):
-                    subscriber(snapshot)
-            except BaseException:
-                self._telling = False
-                raise
 
     # Plans, in the planning thread
 
     def _publish_plan(self, revision: int, plan: BranchingPlan | None, failure: str) -> None:
-        with self._changed:
-            if revision != self._snapshot.revision:
-                return
-            state: Planning = "failed" if plan is None else "planned"
-            self._set(plan=plan, planning=state, failure=failure)
-            snapshot = self._snapshot
+        state: Planning = "failed" if plan is None else "planned"
+        snapshot = self._publisher.of_revision(revision, plan=plan, planning=state, failure=failure)
+        if snapshot is None:
+            return
         self._report_planned(snapshot)
-        self._tell()
+        self._publisher.tell()
 
     # Events
 

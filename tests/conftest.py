@@ -49,7 +49,7 @@ def _no_leftovers() -> Iterator[None]:
     """A test ends the processes it started, and the planning threads."""
     yield
     assert not _children(), "a test left a process running"
-    left = [t.name for t in threading.enumerate() if t.name == "replanner"]
+    left = [t.name for t in threading.enumerate() if t.name == "planning"]
     assert not left, "a test left a session open"
 
 

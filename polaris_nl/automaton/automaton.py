@@ -10,13 +10,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 from typing import Literal as OneOf
-
-import networkx as nx
 
 from polaris_nl.model.domain import Action
 from polaris_nl.model.errors import EditError, did_you_mean
 from polaris_nl.model.formula import Goal, Literal
+
+if TYPE_CHECKING:
+    import networkx as nx
 
 START = "c0"
 
@@ -78,6 +80,8 @@ class Automaton:
     @cached_property
     def graph(self) -> nx.MultiDiGraph[str]:
         """Checkpoint ids joined by transition ids (the edge keys). Never change it."""
+        import networkx as nx  # Takes longer to load than a screen may take to appear.
+
         graph: nx.MultiDiGraph[str] = nx.MultiDiGraph()
         graph.add_nodes_from(self.checkpoints)
         for transition in self.transitions.values():

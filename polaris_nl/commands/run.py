@@ -49,7 +49,7 @@ def run(arguments: Namespace) -> int:
         order = RunOrder(
             program.automaton, plan, session.planner, people, arguments.live, arguments.log
         )
-        commands = Keyboard(session.understanding).commands if arguments.live else tuple
+        commands = Keyboard(session.understanding, program.automaton).commands if arguments.live else tuple
         report = run_simulated(
             order, confirmed=True, show=shower(arguments.json), commands=commands
         )
@@ -109,8 +109,9 @@ def _people(named: list[str] | None, world: World) -> tuple[str, ...] | None:
 class Keyboard:
     """What is typed during a run: stop, pause, resume, or a fact that has come true."""
 
-    def __init__(self, understanding: Understanding) -> None:
+    def __init__(self, understanding: Understanding, automaton: Automaton) -> None:
         self._understanding = understanding
+        self._automaton = automaton
         self._lines: queue.SimpleQueue[str] = queue.SimpleQueue()
         threading.Thread(target=self._read, name="keyboard", daemon=True).start()
 
@@ -126,20 +127,31 @@ class Keyboard:
                 yield command
 
     def _command(self, line: str) -> HumanCommand | None:
-        meant, _ = self._understanding.interpret(line, Automaton())
-        if meant.command in ("stop", "quit"):
-            return HumanCommand("stop")
-        if meant.command == "pause":
-            return HumanCommand("pause")
-        if meant.command == "resume":
-            return HumanCommand("resume")
-        told, _ = self._understanding.interpret(f"wait until {line}", Automaton())
-        literals = [
-            x for e in told.edits if isinstance(e, AddCheckpoint) for x in e.transition.when
-        ]
-        if literals:
-            return HumanCommand("happened", tuple(literals))
-        complain(
-            "Say stop, pause, resume, or what has happened, such as: the resident acknowledges."
-        )
-        return None
+        command = command_in(line, self._understanding, self._automaton)
+        if command is None:
+            complain(
+                "Say stop, pause, resume, or what has happened, such as: the resident acknowledges."
+            )
+        return command
+
+
+def command_in(
+    line: str, understanding: Understanding, automaton: Automaton
+) -> HumanCommand | None:
+    """What a line typed during a run commands: stop, pause, resume, or a fact that has come true.
+
+    Args:
+        line: what was typed.
+        understanding: the language side.
+        automaton: the program that runs; what it is about is what facts are about.
+    """
+    meant, _ = understanding.interpret(line, automaton)
+    if meant.command in ("stop", "quit"):
+        return HumanCommand("stop")
+    if meant.command == "pause":
+        return HumanCommand("pause")
+    if meant.command == "resume":
+        return HumanCommand("resume")
+    told, _ = understanding.interpret(f"wait until {line}", automaton)
+    literals = [x for e in told.edits if isinstance(e, AddCheckpoint) for x in e.transition.when]
+    return HumanCommand("happened", tuple(literals)) if literals else None

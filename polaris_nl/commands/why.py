@@ -24,7 +24,7 @@ def run(arguments: Namespace) -> int:
     program, world = opened(arguments)
     with Session(world, program.automaton) as session:
         plan = session.planner.compile(program.automaton)
-        asker = _Asker(session, program.automaton, plan)
+        asker = Asker(session, program.automaton, plan)
         if arguments.action is not None:
             found = asker.action(arguments.action)
         elif arguments.checkpoint is not None:
@@ -43,7 +43,9 @@ def run(arguments: Namespace) -> int:
 
 
 @dataclass(frozen=True)
-class _Asker:
+class Asker:
+    """Answers from a program and its plan."""
+
     session: Session
     automaton: Automaton
     plan: BranchingPlan

@@ -166,10 +166,9 @@ class Changes:
                 return Interpretation(
                     utterance, "answer", "It is like that already; nothing changes."
                 ), dialogue
-            here = touched[-1] if touched and touched[-1] in changed.checkpoints else None
-            after = replace(
-                dialogue, here=here, touched=tuple(t for t in touched if t in changed.checkpoints)
-            )
+            kept = tuple(t for t in touched if t in changed.checkpoints)
+            here = _going_on(kept, program, changed, dialogue)
+            after = replace(dialogue, here=here, touched=kept)
             return Interpretation(utterance, "applied", sentence(say), tuple(edits)), after
         return None
 
@@ -294,6 +293,16 @@ class Changes:
         if question is not None:
             raise question
         raise Misfit("")
+
+
+def _going_on(
+    touched: Sequence[str], program: Automaton, changed: Automaton, dialogue: Dialogue
+) -> str | None:
+    """Where the next step goes: after a new step or a last one, else where it would have gone."""
+    latest = touched[-1] if touched else None
+    if latest is not None and (latest not in program.checkpoints or not changed.outgoing(latest)):
+        return latest
+    return dialogue.here if dialogue.here in changed.checkpoints else None
 
 
 def _plain(step: Step) -> bool:

@@ -151,6 +151,15 @@ class ClauseFinder:
             or self._place_of_surfaces(mention, types)
         )
 
+    def stands_there(self, mention: Mention) -> bool:
+        """Whether one of the things that a mention can mean is where it says, at the start."""
+        places = {c.entity for c in mention.place.candidates} if mention.place else set()
+        things = {c.entity for c in mention.candidates}
+        return any(
+            len(f.args) == 2 and f.args[0] in things and f.args[1] in places
+            for f in self._world.facts
+        )
+
     def _place_of_surfaces(self, mention: Mention, types: Sequence[str]) -> bool:
         """A region where a surface is wanted: "bring the cup to the kitchen" asks where in the kitchen."""
         return "surface" in types and any(
@@ -177,10 +186,17 @@ def pronoun_types(pronoun: str) -> tuple[str, ...]:
     return _PRONOUN_TYPES.get(pronoun, ("object", "container", "person"))
 
 
+_IDLE_PLACE = 2.5
+"""What a place in a list costs where nothing stands: in "the bowl in the cupboard and the cup in the
+drawer" it is where the bowl is to be put."""
+
+
 def _mention_cost(mention: Mention, types: Sequence[str], finder: ClauseFinder) -> float:
     cost = 0.15 if mention.place is not None else 0.0
     if mention.parts:
-        return cost + 0.02 * len(mention.parts)
+        placed = sum(_IDLE_PLACE for p in mention.parts if p.place and not finder.stands_there(p))
+        return cost + 0.02 * len(mention.parts) + placed
+    cost += 0.05 * len(mention.states)
     best = min((c.rank for c in mention.candidates), default=0)
     vague = 0.3 if mention.candidates and best == 3 else 0.0
     place = 0.0

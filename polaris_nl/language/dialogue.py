@@ -15,13 +15,17 @@ class Pending:
 
     Attributes:
         utterance: what was said, to be read again with the answer.
-        phrase: the words that were unclear, or "" where something was missing.
+        phrase: the words that were unclear, or the parameter that was missing, as `?s`.
         options: the answers offered, as spoken, with the entity each means.
+        types: what an answer may be where nothing was offered; empty for anything.
+        number: how many are wanted, or 0 for any number.
     """
 
     utterance: str
     phrase: str
     options: tuple[tuple[str, str], ...] = ()
+    types: tuple[str, ...] = ()
+    number: int = 0
 
 
 @dataclass(frozen=True, slots=True)

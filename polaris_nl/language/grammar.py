@@ -49,16 +49,21 @@ class Phrases:
 
 @dataclass(frozen=True)
 class Common:
-    """What every domain shares: see `grammars/en/common.yaml`, of which this is the content."""
+    """What every domain shares: see `grammars/en/common.yaml`, of which this is the content.
+
+    Attributes:
+        ordinary: everyday words (`words.txt`), none of which is taken for a slip of another one.
+    """
 
     lists: Mapping[str, str]
     values: Mapping[str, object]
+    ordinary: frozenset[str] = frozenset()
 
     def words(self, *path: str) -> list[tuple[str, ...]]:
         """A list of phrases as words, the longest first."""
         value: object = self.values
         for key in path:
-            value = value[key] if isinstance(value, Mapping) else ()
+            value = value.get(key, ()) if isinstance(value, Mapping) else ()
         texts = value if isinstance(value, list) else []
         return sorted({phrase(str(t)) for t in texts}, key=lambda p: (-len(p), p))
 
@@ -66,7 +71,7 @@ class Common:
         """A list of wordings."""
         value: object = self.values
         for key in path:
-            value = value[key] if isinstance(value, Mapping) else ()
+            value = value.get(key, ()) if isinstance(value, Mapping) else ()
         texts = value if isinstance(value, list) else []
         return tuple(parse_template(str(t), self.lists) for t in texts)
 
@@ -162,7 +167,9 @@ def read_common(path: Path) -> Common:
             key: _unlined(value) for key, value in root.mapping("A grammar", _keys(root)).items()
         }
         check_schema(str(values.get("schema", "")), SCHEMA, "grammar")
-        return Common(_texts(root.value.get("lists")), values)
+        beside = path.with_name("words.txt")
+        ordinary = beside.read_text(encoding="utf-8").split() if beside.is_file() else ()
+        return Common(_texts(root.value.get("lists")), values, frozenset(ordinary))
     except FormatError as error:
         raise GrammarError(error.reason, path, error.line) from error
 

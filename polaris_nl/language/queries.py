@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from polaris_nl.automaton.automaton import Automaton
 from polaris_nl.language.dialogue import Dialogue
-from polaris_nl.language.interpretation import Interpretation, Query, Question
+from polaris_nl.language.interpretation import Interpretation, Query
 from polaris_nl.language.mention import Mention
 from polaris_nl.language.patterns import Match
 from polaris_nl.language.resolve import Misfit, Scope, Unclear
@@ -27,11 +27,13 @@ def answer_to(
     program: Automaton,
     dialogue: Dialogue,
 ) -> Interpretation | None:
-    """The answer that a question asks for, or None where the utterance is no question."""
+    """The answer that a question asks for, or None where the utterance is no question.
+
+    Raises:
+        Unclear: it is about something that has several meanings.
+    """
     for match in matches:
         query = _query(language, match, tokens, dialogue)
-        if isinstance(query, Interpretation):
-            return query
         if query is not None:
             return Interpretation(utterance, "answer", query=query)
     literal = _yes_or_no(language, tokens, dialogue)
@@ -46,7 +48,7 @@ def answer_to(
 
 def _query(
     language: Understanding, match: Match, tokens: Sequence[str], dialogue: Dialogue
-) -> Query | Interpretation | None:
+) -> Query | None:
     slots = match.slots
     if match.intent in ("world", "problems"):
         return Query(match.intent)  # type: ignore[arg-type]
@@ -55,10 +57,6 @@ def _query(
         assert isinstance(mention, Mention)
         try:
             entities = language.resolver.meant(mention, (), dialogue.scope).entities
-        except Unclear as unclear:
-            question = Question(unclear.about, unclear.options)
-            say = language.questions.asked(unclear.about, unclear.options)
-            return Interpretation(" ".join(tokens), "question", say, question=question)
         except Misfit:
             return None
         return Query("where", entity=entities[0])

@@ -14,16 +14,30 @@ _PLACE_PREDICATES = ("at", "in", "person-in", "located", "has")
 
 
 class Unclear(Exception):
-    """A mention that may mean several entities, or none that is known: the reading has a hole."""
+    """A mention that may mean several entities, or none that is known: the reading has a hole.
+
+    Args:
+        about: the question.
+        options: what can be answered, as spoken.
+        phrase: the words that are unclear, or the missing parameter.
+        types: what an answer can be.
+        number: how many are asked for, or 0 for any number.
+    """
 
     def __init__(
-        self, about: str, options: Sequence[str], phrase: str = "", slot: str = ""
+        self,
+        about: str,
+        options: Sequence[str],
+        phrase: str,
+        types: Sequence[str] = (),
+        number: int = 0,
     ) -> None:
         super().__init__(about)
         self.about = about
         self.options = tuple(options)
         self.phrase = phrase
-        self.slot = slot
+        self.types = tuple(types)
+        self.number = number
 
 
 class Misfit(Exception):
@@ -37,12 +51,12 @@ class Scope:
     Attributes:
         referents: entities, the latest last.
         group: the entities of the latest plural mention.
-        choices: what the user has answered for phrases that were asked about.
+        choices: what the user has answered for phrases and missing parameters that were asked about.
     """
 
     referents: tuple[str, ...] = ()
     group: tuple[str, ...] = ()
-    choices: Mapping[str, str] = field(default_factory=dict)
+    choices: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     def after(self, entities: Sequence[str]) -> Scope:
         """The scope once entities were mentioned."""
@@ -140,7 +154,10 @@ class Resolver:
         return tuple(found)
 
     def _implied(self, clause: Clause, parameter: Variable, scope: Scope) -> Meant:
-        """What isn't said: the latest that fits, or the only one there is."""
+        """What isn't said: what was answered, the latest that fits, or the only one there is."""
+        answered = scope.choices.get(parameter.name)
+        if answered:
+            return Meant(answered)
         for name in reversed(scope.referents):
             if self._is(name, parameter.types):
                 return Meant((name,))
@@ -150,7 +167,9 @@ class Resolver:
         what = " or ".join(parameter.types)
         options = [self._world.entities[n].spoken for n in fitting][:6]
         question = {"surface": "Where to?", "container": "Into what?", "message": "About what?"}
-        raise Unclear(question.get(what, f"Which {what}?"), options, "", parameter.name)
+        raise Unclear(
+            question.get(what, f"Which {what}?"), options, parameter.name, parameter.types
+        )
 
     def meant(
         self, mention: Mention, types: Sequence[str], scope: Scope, condition: bool = False
@@ -178,19 +197,52 @@ class Resolver:
             return self._every(mention, types, names)
         if mention.quantifier in ("all", "both") or (mention.plural and not mention.number):
             if mention.quantifier == "both" and len(names) > 2:
-                raise Unclear(
-                    f"Which two do you mean by {mention.text}?", self._spoken(names), mention.text
-                )
+                return self._several(names, mention, scope, 2)
             return Meant(tuple(names))
-        if mention.number and mention.number == len(names):
+        if mention.number == len(names):
             return Meant(tuple(names))
+        if mention.number > 1:
+            return self._several(names, mention, scope, mention.number)
         return self._one(names, mention, scope)
+
+    def among(self, mention: Mention, names: Sequence[str], scope: Scope) -> tuple[str, ...]:
+        """Those of some entities that an answer means, none where it means something else."""
+        if mention.parts:
+            each = [self.among(part, names, scope) for part in mention.parts]
+            found = tuple(dict.fromkeys(e[0] for e in each if len(e) == 1))
+            return found if len(found) == len(mention.parts) and not mention.alternative else ()
+        if mention.pronoun not in ("", "one"):
+            return ()
+        candidates = [c for c in mention.candidates if c.entity in names]
+        if mention.pronoun == "one":
+            candidates = [Candidate(n, 1) for n in names]
+        if not candidates:
+            return ()
+        narrowed = replace(mention, pronoun="", candidates=tuple(candidates))
+        return tuple(self._fitting(narrowed, (), scope))
+
+    def _several(
+        self, names: Sequence[str], mention: Mention, scope: Scope, number: int
+    ) -> Meant:
+        """A number of entities: what was answered, or a question."""
+        chosen = scope.choices.get(mention.text, ())
+        if len(chosen) == number and set(chosen) <= set(names):
+            return Meant(chosen)
+        if len(names) < number:
+            raise Misfit(f"I know only {len(names)} of {mention.text}.")
+        count = {2: "two", 3: "three", 4: "four", 5: "five"}.get(number, str(number))
+        raise Unclear(
+            f"Which {count} do you mean by {mention.text}?",
+            self._spoken(names),
+            mention.text,
+            number=number,
+        )
 
     def _one(self, names: Sequence[str], mention: Mention, scope: Scope) -> Meant:
         names = list(dict.fromkeys(names))
-        chosen = scope.choices.get(mention.text)
-        if chosen in names:
-            return Meant((chosen,))
+        chosen = scope.choices.get(mention.text, ())
+        if chosen and set(chosen) <= set(names):
+            return Meant(chosen)
         if len(names) == 1:
             return Meant((names[0],))
         recent = [r for r in reversed(scope.referents) if r in names]
@@ -198,7 +250,8 @@ class Resolver:
             return Meant((recent[0],))
         # The user's choice wins, then what was mentioned before; else it is asked.
         options = self._spoken(names)
-        raise Unclear(f"Which {_noun(mention)} do you mean?", options, mention.text)
+        which = "one" if mention.alternative else _noun(mention)
+        raise Unclear(f"Which {which} do you mean?", options, mention.text)
 
     def _fitting(self, mention: Mention, types: Sequence[str], scope: Scope) -> list[str]:
         candidates = [c for c in mention.candidates if self._is(c.entity, types)]
@@ -300,7 +353,7 @@ class Resolver:
             if user is not None:
                 return Meant((user.name,))
             people = [p.name for p in self._world.of_type("person")]
-            return self._one(people, replace(mention, other=True), scope)
+            return self._asked_who(people, mention, scope)
         if (
             mention.pronoun in _PLURAL
             and scope.group
@@ -310,6 +363,9 @@ class Resolver:
         gender = {"she": "female", "her": "female", "he": "male", "him": "male"}.get(
             mention.pronoun, ""
         )
+        chosen = scope.choices.get(mention.text, ())
+        if chosen and all(self._is(n, types) for n in chosen):
+            return Meant(chosen)
         fitting = [
             r
             for r in reversed(scope.referents)
@@ -322,7 +378,15 @@ class Resolver:
             return Meant((known[0],))
         options = self._spoken(known) if len(known) <= 6 else []
         who = "Who" if "person" in types else "What"
-        raise Unclear(f'{who} do you mean by "{mention.text}"?', options, mention.text)
+        raise Unclear(f'{who} do you mean by "{mention.text}"?', options, mention.text, types)
+
+    def _asked_who(self, people: Sequence[str], mention: Mention, scope: Scope) -> Meant:
+        """The person that "me" was said to be, or a question."""
+        chosen = scope.choices.get(mention.text, ())
+        if len(people) == 1 or chosen:
+            return Meant(chosen or tuple(people))
+        options = self._spoken(people)
+        raise Unclear(f'Who do you mean by "{mention.text}"?', options, mention.text, ("person",))
 
     def _every(self, mention: Mention, types: Sequence[str], names: Iterable[str]) -> Meant:
         kind = mention.kind or (types[0] if types else "object")
@@ -353,6 +417,8 @@ class Resolver:
         return f"I know no {what} called {mention.text}. I know {', '.join(there)}."
 
 
+EVERY_ONE = ("them", "these", "those", "both", "both of them", "them both", "all of them")
+"""Pronouns that answer a question with all that was offered."""
 _PLURAL = (
     "them",
     "they",

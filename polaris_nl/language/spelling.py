@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from rapidfuzz.distance import OSA
 
@@ -12,14 +12,20 @@ from polaris_nl.language.lexicon import Lexicon
 from polaris_nl.language.template import vocabulary
 from polaris_nl.language.tokens import BREAK, COMMA, phrase
 
+_NO_PHRASES = ("schema", "lists", "queries", "edits", "corrections")
+_KEYS = ("refused", "pronouns", "possessives", "numbers", "ordinals")
 SHORTEST = 4
+SAFE = 6
+"""Letters from which a word with one other letter is taken for a slip rather than another word."""
 LONG = 8
+"""Letters from which two slips are mended."""
 
 
 class Spelling:
     """The vocabulary of a grammar and a world, for finding what a misspelt word was meant to be."""
 
     def __init__(self, grammar: Grammar, lexicon: Lexicon) -> None:
+        self._names = frozenset(w for w in lexicon.vocabulary if len(w) >= SHORTEST)
         known = set(lexicon.vocabulary)
         common = grammar.common
         for phrases in grammar.predicates.values():
@@ -30,8 +36,12 @@ class Spelling:
             for intent in common.mapping(section):
                 known.update(w for t in common.templates(section, intent) for w in vocabulary(t))
         known.update(w for t in common.templates("corrections") for w in vocabulary(t))
-        known.update(_all_words(common.values))
+        known.update(_all_words({k: v for k, v in common.values.items() if k not in _NO_PHRASES}))
+        for key in _KEYS:
+            known.update(w for k in common.mapping(key) for w in phrase(k))
         self.known = frozenset(known)
+        self._words = frozenset(w for w in known - self._names if len(w) >= SHORTEST)
+        self._ordinary = common.ordinary
 
     def mended(self, tokens: Sequence[str], program: Automaton) -> list[str]:
         """Tokens with clear slips mended; words of checkpoint names count as known."""
@@ -46,18 +56,29 @@ class Spelling:
             or len(token) < SHORTEST
         ):
             return token
-        if not token.isalpha():
+        if not token.isalpha() or token in self._ordinary:
             return token
-        allowed = 2 if len(token) >= LONG else 1
-        near = [
-            word
-            for word in self.known
-            if word[:1] == token[:1]
-            and len(word) >= SHORTEST
-            and abs(len(word) - len(token)) <= allowed
-            and OSA.distance(token, word, score_cutoff=allowed) <= allowed
-        ]
-        return near[0] if len(near) == 1 else token
+        slips = 2 if len(token) >= LONG else 1
+        return _nearest(token, self._names, slips) or _nearest(token, self._words, 1) or token
+
+
+def _nearest(token: str, words: Iterable[str], allowed: int) -> str:
+    """The one word that is nearest to a token with a slip in it, or ""."""
+    near: dict[int, list[str]] = {}
+    for word in words:
+        if word[:1] == token[:1] and abs(len(word) - len(token)) <= allowed:
+            distance = OSA.distance(token, word, score_cutoff=allowed)
+            if distance <= allowed and not _another(token, word):
+                near.setdefault(distance, []).append(word)
+    nearest = near[min(near)] if near else []
+    return nearest[0] if len(nearest) == 1 else ""
+
+
+def _another(token: str, word: str) -> bool:
+    """Whether two words differ as words do more often than slips: wash and wish, load and loader."""
+    if len(token) == len(word):
+        return len(token) < SAFE and sorted(token) != sorted(word)
+    return token.startswith(word) and token[-1] != word[-1]
 
 
 def _all_words(value: object) -> set[str]:
@@ -65,7 +86,7 @@ def _all_words(value: object) -> set[str]:
     if isinstance(value, str):
         return set(phrase(value)) if not any(c in value for c in "{<(|[") else set()
     if isinstance(value, Mapping):
-        return {w for k, v in value.items() for w in (*_all_words(v), *_all_words(str(k)))}
+        return {w for v in value.values() for w in _all_words(v)}
     if isinstance(value, list):
         return {w for item in value for w in _all_words(item)}
     return set()

@@ -5,8 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
-from polaris_nl.automaton.automaton import START, Automaton, Checkpoint, Transition
-from polaris_nl.automaton.edits import AddCheckpoint, Edit, apply
+from polaris_nl.automaton.automaton import Automaton, Checkpoint, Transition
+from polaris_nl.automaton.edits import (
+    AddCheckpoint,
+    Edit,
+    InsertCheckpoint,
+    RenameCheckpoint,
+    SetGoals,
+    apply,
+)
 from polaris_nl.language.naming import Names
 from polaris_nl.language.resolve import Misfit, Resolver, Scope
 from polaris_nl.language.segment import Cut, Item
@@ -17,6 +24,12 @@ SEPARATE = ("robot-at", "alerted-to", "person-in", "holding", "has")
 """Goals that are steps of their own when joined by "and": where the robot is, and what happens to people."""
 
 
+_SEQUELS = ("then", "and then", "after that", "and after that", "afterwards", "and afterwards")
+"""Words in front of a condition that keep it where the program has come to."""
+_GOING_ON = (*_SEQUELS[1:], "and finally", "and next", "finally", "after this")
+"""Words after a condition that stands behind its goal: "bring it once she acknowledges, and then ..."."""
+
+
 @dataclass(frozen=True, slots=True)
 class Step:
     """Goals that belong to one checkpoint, or a wait without goals.
@@ -24,11 +37,14 @@ class Step:
     Attributes:
         role: `then` goes after the step before; `condition` starts a branch; `else` is taken if the
             others can't be.
+        sequel: the condition is waited for after the step before ("then once ..."), and starts no
+            branch further up.
     """
 
     goals: tuple[Goal, ...] = ()
     when: tuple[Literal, ...] = ()
     role: str = "then"
+    sequel: bool = False
 
 
 @dataclass
@@ -49,49 +65,122 @@ class Builder:
     touched: list[str] = field(default_factory=list)
 
     def add(self, step: Step) -> None:
-        """Puts a step into the program."""
-        if step.role == "else" and self.anchor is not None:
-            source = self.anchor
+        """Puts a step into the program.
+
+        Raises:
+            Misfit: it is a second "otherwise".
+        """
+        if step.role == "else":
+            self._otherwise(step)
         elif step.role == "condition":
-            source = self._fitting_place(step.when)
-            self.anchor = source
+            self._branch(step)
         else:
-            source = self.here
-        name = self.names.checkpoint(step.goals, step.when, self.program)
-        checkpoint = Checkpoint(self.program.fresh_checkpoint_id(), name, step.goals)
-        transition = Transition(
-            self.program.fresh_transition_id(), source, checkpoint.id, step.when
-        )
-        edit = AddCheckpoint(checkpoint, transition)
+            self._next(step)
+
+    def _otherwise(self, step: Step) -> None:
+        source = self.anchor if self.anchor is not None else self.here
+        if any(not t.when for t in self.program.outgoing(source)):
+            raise Misfit(
+                'There is an "otherwise" already; say what it should be instead, or remove it first.'
+            )
+        self._add(step.goals, (), source)
+
+    def _branch(self, step: Step) -> None:
+        """Adds a branch; one that is there already goes on at its end."""
+        source = self._fitting_place(step)
+        self.anchor = source
+        for transition in self.program.outgoing(source):
+            if transition.conditional == set(step.when):
+                self.here = self._end(transition.target)
+                if step.goals:
+                    self._next(Step(step.goals))
+                return
+        self._add(step.goals, step.when, source)
+
+    def _next(self, step: Step) -> None:
+        """Goes on after the latest checkpoint: in front of what follows it, never beside it."""
+        waiting = self.program.checkpoints[self.here]
+        outgoing = self.program.outgoing(self.here)
+        if len(outgoing) == 1 and not outgoing[0].when:
+            checkpoint = self._checkpoint(step.goals, ())
+            onward = self.program.fresh_transition_id()
+            self._edited(InsertCheckpoint(checkpoint, outgoing[0].id, onward), checkpoint.id)
+        elif outgoing:
+            self._add(step.goals, (), self._end(self.here))
+        elif self._only_waits(waiting):
+            self._fill(waiting, step.goals)
+        else:
+            self._add(step.goals, (), self.here)
+
+    def _only_waits(self, checkpoint: Checkpoint) -> bool:
+        """Whether a checkpoint is a "wait until" that nothing followed yet."""
+        incoming = self.program.incoming(checkpoint.id)
+        if checkpoint.goals or checkpoint.action is not None or incoming is None:
+            return False
+        beside = self.program.outgoing(incoming.source)
+        return bool(incoming.when) and all(t.when for t in beside)
+
+    def _fill(self, checkpoint: Checkpoint, goals: tuple[Goal, ...]) -> None:
+        """What follows a wait becomes what is waited for."""
+        incoming = self.program.incoming(checkpoint.id)
+        when = incoming.when if incoming is not None else ()
+        name = self.names.checkpoint(goals, when, self.program)
+        self._edited(SetGoals(checkpoint.id, goals), checkpoint.id)
+        self._edited(RenameCheckpoint(checkpoint.id, name), checkpoint.id)
+
+    def _add(
+        self, goals: tuple[Goal, ...], when: tuple[Literal, ...], source: str
+    ) -> None:
+        checkpoint = self._checkpoint(goals, when)
+        transition = Transition(self.program.fresh_transition_id(), source, checkpoint.id, when)
+        self._edited(AddCheckpoint(checkpoint, transition), checkpoint.id)
+
+    def _checkpoint(self, goals: tuple[Goal, ...], when: tuple[Literal, ...]) -> Checkpoint:
+        name = self.names.checkpoint(goals, when, self.program)
+        return Checkpoint(self.program.fresh_checkpoint_id(), name, goals)
+
+    def _edited(self, edit: Edit, checkpoint: str) -> None:
         self.program = apply(self.program, edit)
         self.edits.append(edit)
-        self.touched.append(checkpoint.id)
-        self.here = checkpoint.id
+        if checkpoint not in self.touched:
+            self.touched.append(checkpoint)
+        self.here = checkpoint
 
-    def _fitting_place(self, when: Sequence[Literal]) -> str:
+    def _end(self, checkpoint: str) -> str:
+        """The leaf that the latest way on from a checkpoint comes to."""
+        while outgoing := self.program.outgoing(checkpoint):
+            checkpoint = outgoing[-1].target
+        return checkpoint
+
+    def _fitting_place(self, step: Step) -> str:
         """The checkpoint that a condition belongs to: its alert's, its object's, or the latest one."""
         messages = {
-            x.args[0] for x in when if x.predicate in ("acknowledged", "dismissed") and x.args
+            x.args[0] for x in step.when if x.predicate in ("acknowledged", "dismissed") and x.args
         }
+        sibling = self._sibling(step.when)
+        if step.sequel and not (messages and sibling):
+            return self.here
         alerting = self._latest(
             lambda goal: goal.predicate == "alerted-to" and goal.args[-1] in messages
         )
-        if alerting is not None:
+        if alerting is not None and not self._goes_straight_on(alerting):
             return alerting
-        if messages or self.here == START:
+        if any(t.when for t in self.program.outgoing(self.here)):
             return self.here
-        if any(t.when for t in self.program.outgoing(self.here)) or not self._branches_above():
-            return self.here
-        # A sibling of the branch we are in: its condition is about the same things.
+        return sibling or self.here
+
+    def _goes_straight_on(self, checkpoint: str) -> bool:
+        outgoing = self.program.outgoing(checkpoint)
+        return bool(outgoing) and not any(t.when for t in outgoing)
+
+    def _sibling(self, when: Sequence[Literal]) -> str | None:
+        """Where the way to here branched on a condition about the same things."""
         about = {arg for x in when for arg in x.args}
         for transition in reversed(self.program.path(self.here)):
             labels = {arg for x in transition.when for arg in x.args}
-            if transition.when and about & labels and set(when) != transition.conditional:
+            if transition.when and about & labels:
                 return transition.source
-        return self.here
-
-    def _branches_above(self) -> bool:
-        return any(t.when for t in self.program.path(self.here))
+        return None
 
     def _latest(self, fits: Callable[[Literal], bool]) -> str | None:
         path = [self.here, *reversed([t.source for t in self.program.path(self.here)])]
@@ -103,8 +192,13 @@ class Builder:
         return None
 
 
-def steps_of(cut: Cut, resolver: Resolver, scope: Scope) -> tuple[list[Step], Scope]:
+def steps_of(
+    cut: Cut, resolver: Resolver, scope: Scope, branched: bool = False
+) -> tuple[list[Step], Scope]:
     """The steps that a cut utterance asks for, in order.
+
+    Args:
+        branched: there is a branch already that "otherwise" can belong to.
 
     Returns:
         They, and the scope after them.
@@ -113,7 +207,7 @@ def steps_of(cut: Cut, resolver: Resolver, scope: Scope) -> tuple[list[Step], Sc
         Unclear: a question has to be asked.
         Misfit: the reading can't be.
     """
-    reader = _Reader(cut.items, resolver, scope)
+    reader = _Reader(cut.items, resolver, scope, branched)
     while reader.at < len(reader.items):
         reader.read()
     reader.finish()
@@ -123,7 +217,11 @@ def steps_of(cut: Cut, resolver: Resolver, scope: Scope) -> tuple[list[Step], Sc
 class _Reader:
     """Walks over items with the conditions that wait for their goals."""
 
-    def __init__(self, items: Sequence[Item], resolver: Resolver, scope: Scope) -> None:
+    def __init__(
+        self, items: Sequence[Item], resolver: Resolver, scope: Scope, branched: bool
+    ) -> None:
+        self._branched = branched
+        self._sequel = False
         self.items = list(items)
         self.resolver = resolver
         self.scope = scope
@@ -131,6 +229,7 @@ class _Reader:
         self.steps: list[Step] = []
         self._when: tuple[Literal, ...] = ()
         self._how = ""
+        self._waits = False
         self._else_next = False
         self._new_step = True
         self._negate = False
@@ -145,10 +244,11 @@ class _Reader:
             self._condition(item.mark)
         elif item.mark in ("then", "break"):
             self._new_step = True
-            if item.mark == "break" and self._how == "until":
-                self.finish()
+            self._sequel = item.mark == "then" and item.text in _SEQUELS
         elif item.mark == "else":
-            if not self.steps:
+            if self._how == "until":
+                self.finish()
+            if not self.steps and not self._branched:
                 raise Misfit(
                     '"Otherwise" needs a condition before it: say "if ..., ... otherwise ...".'
                 )
@@ -165,7 +265,7 @@ class _Reader:
                 raise Misfit(
                     "What should I do then? Say the condition and what to do, in one sentence."
                 )
-            self.steps.append(Step((), self._when, "condition"))
+            self.steps.append(Step((), self._when, "condition", self._waits))
         if self._unless:
             raise Misfit('"Unless" needs something to do: say "unless ..., ...".')
         self._when, self._how = (), ""
@@ -188,7 +288,8 @@ class _Reader:
         else:
             self.finish()
             self._when, self._how = when, mark
-        self._new_step = True
+            self._waits = self._sequel or mark == "until"
+        self._new_step, self._sequel = True, False
 
     def _condition_follows(self) -> bool:
         following = self.items[self.at + 1 :]
@@ -199,7 +300,8 @@ class _Reader:
         rest = [i for i in self.items[self.at :] if i.mark != "comma"]
         if not rest or rest[0].mark in ("break", "else", "if", "until", "unless"):
             return True
-        return self._postposed
+        goes_on = rest[0].mark == "then" and rest[0].text in _GOING_ON
+        return goes_on or self._postposed
 
     def _attach(self, previous: Step, when: tuple[Literal, ...], mark: str) -> None:
         if mark == "unless":
@@ -213,7 +315,7 @@ class _Reader:
             goals = tuple(x.negation for x in _flat(previous.goals))
             self.steps[-1] = Step(goals, when, "condition")
         elif mark == "until":
-            self._when, self._how = when, mark
+            self._when, self._how, self._waits = when, mark, True
         else:
             self.steps[-1] = replace(previous, when=when, role="condition")
 
@@ -230,7 +332,7 @@ class _Reader:
             self.steps.append(Step(goals, (), "else"))
             self._else_next = False
         elif self._when:
-            self.steps.append(Step(goals, self._when, "condition"))
+            self.steps.append(Step(goals, self._when, "condition", self._waits))
             self._when, self._how = (), ""
         elif self._new_step or self._separate(goals):
             self.steps.append(Step(goals))

@@ -22,14 +22,15 @@ from polaris_nl.language.phrases import recogniser_phrases
 from polaris_nl.language.queries import answer_to
 from polaris_nl.language.questions import Questions
 from polaris_nl.language.refusals import Refusals
-from polaris_nl.language.resolve import Misfit, Resolver, Unclear
+from polaris_nl.language.resolve import Misfit, Resolver, Scope, Unclear
 from polaris_nl.language.segment import Cut, Segmenter, cheapest
 from polaris_nl.language.spelling import Spelling
-from polaris_nl.language.structure import Builder, steps_of
+from polaris_nl.language.structure import Builder, Step, steps_of
 from polaris_nl.language.tokens import BREAK, COMMA, LONGEST, MOST_WORDS, words
 from polaris_nl.language.wording import GrammarWording
 from polaris_nl.model.world import World
 
+AS_IT_IS = "It is like that already; nothing changes."
 TRIED = 6
 """Ways to cut an utterance that are tried before it is refused or asked about."""
 QUESTION_COST = 1.5
@@ -65,7 +66,7 @@ class Understanding:
                 self._commands.setdefault(phrase_words, command)  # type: ignore[arg-type]
         self._spelling = Spelling(self.grammar, lexicon)
         self._refusals = Refusals(world, self._spelling.known, clauses, self.wording)
-        self.questions = Questions(common)
+        self.questions = Questions(common, self.resolver, self.wording)
         self._edits = Patterns(common, "edits")
         self._queries = Patterns(common, "queries")
         self._changes = Changes(self)
@@ -100,11 +101,16 @@ class Understanding:
             ), dialogue
         pending = dialogue.pending
         dialogue = replace(dialogue, pending=None)
-        if pending is not None:
-            answered = self._answered(utterance, bare, pending, program, dialogue)
-            if answered is not None:
-                return answered
-        return self._fresh(utterance, tokens, bare, program, dialogue)
+        if pending is None:
+            return self._fresh(utterance, tokens, bare, program, dialogue)
+        answered = self._answered(utterance, bare, pending, program, dialogue)
+        if answered is not None:
+            return answered
+        unanswered = replace(dialogue, scope=replace(dialogue.scope, choices={}))
+        meant, after = self._fresh(utterance, tokens, bare, program, unanswered)
+        if meant.command in _KEEPING or meant.query is not None or meant.outcome == "refused":
+            return meant, replace(dialogue, pending=pending)
+        return meant, after
 
     def read_back(self, program: Automaton) -> str:
         """A program in words."""
@@ -152,7 +158,10 @@ class Understanding:
         if changed is not None:
             return changed
         matches = self._queries.matches(bare, mentions, program, dialogue.touched)
-        answer = answer_to(self, utterance, matches, bare, program, dialogue)
+        try:
+            answer = answer_to(self, utterance, matches, bare, program, dialogue)
+        except Unclear as unclear:
+            return self.asked(utterance, unclear, dialogue)
         if answer is not None:
             return answer, dialogue
         return self.said(utterance, tokens, program, dialogue)
@@ -183,8 +192,9 @@ class Understanding:
         self, utterance: str, cuts: Sequence[Cut], program: Automaton, dialogue: Dialogue
     ) -> Iterator[tuple[float, Interpretation, Dialogue]]:
         for cut in cuts:
+            builder = self._builder(program, dialogue)
             try:
-                steps, scope = steps_of(cut, self.resolver, dialogue.scope)
+                steps, scope = self._steps(cut, builder, dialogue)
             except Misfit:
                 continue
             except Unclear as unclear:
@@ -193,9 +203,9 @@ class Understanding:
                 continue
             if not steps:
                 continue
-            builder = self._builder(program, dialogue)
-            for step in steps:
-                builder.add(step)
+            if not builder.edits:
+                yield cut.cost, Interpretation(utterance, "answer", AS_IT_IS), dialogue
+                continue
             after = replace(
                 dialogue,
                 here=builder.here,
@@ -212,12 +222,27 @@ class Understanding:
             )
             yield cut.cost, meant, after
 
+    def _steps(self, cut: Cut, builder: Builder, dialogue: Dialogue) -> tuple[list[Step], Scope]:
+        """The steps of a cut utterance, put into the program.
+
+        Raises:
+            Unclear: a question has to be asked.
+            Misfit: the reading can't be.
+        """
+        branched = builder.anchor is not None
+        steps, scope = steps_of(cut, self.resolver, dialogue.scope, branched)
+        for step in steps:
+            builder.add(step)
+        return steps, scope
+
     def _builder(self, program: Automaton, dialogue: Dialogue) -> Builder:
         here = dialogue.here if dialogue.here in program.checkpoints else None
         if here is None:
             leaves = [c for c in program.checkpoints if not program.outgoing(c)]
             here = leaves[-1] if leaves else START
         anchor = dialogue.anchor if dialogue.anchor in program.checkpoints else None
+        if anchor is None:
+            anchor = next((t.source for t in reversed(program.path(here)) if t.when), None)
         return Builder(self.world, self.names, program, here, anchor)
 
     # Questions and refusals
@@ -229,8 +254,8 @@ class Understanding:
         question = Question(unclear.about, unclear.options)
         by_name = {self.world.entities[e].spoken: e for e in self.world.entities}
         options = tuple((o, by_name.get(o, o)) for o in unclear.options)
-        say = self.questions.asked(unclear.about, unclear.options)
-        pending = Pending(utterance, unclear.phrase, options)
+        say = self.questions.asked(unclear.about, options)
+        pending = Pending(utterance, unclear.phrase, options, unclear.types, unclear.number)
         return Interpretation(utterance, "question", say, question=question), replace(
             dialogue, pending=pending
         )
@@ -244,30 +269,26 @@ class Understanding:
         dialogue: Dialogue,
     ) -> tuple[Interpretation, Dialogue] | None:
         """Reads an utterance as the answer to the open question, or None where it is something else."""
-        chosen = self.questions.choice(bare, pending.options, self.mentions(bare))
+        try:
+            chosen = self.questions.choice(bare, pending, self.mentions, dialogue.scope)
+        except Unclear as unclear:
+            narrowed = Unclear(
+                unclear.about, unclear.options, pending.phrase, pending.types, pending.number
+            )
+            meant, after = self.asked(pending.utterance, narrowed, dialogue)
+            return replace(meant, utterance=utterance), after
         if chosen is None:
             return None
-        if chosen == "":
+        if not chosen:
             say = "All right, I left that out. Say it another way."
-            return Interpretation(utterance, "answer", say), dialogue
-        if pending.phrase:
-            scope = replace(
-                dialogue.scope, choices={**dialogue.scope.choices, pending.phrase: chosen}
-            )
-            text = pending.utterance
-        else:
-            scope = dialogue.scope
-            name = self.world.entities[chosen].spoken if chosen in self.world.entities else chosen
-            link = "in" if self._kind(chosen) == "container" else "to"
-            text = f"{pending.utterance.rstrip('. !?')} {link} the {name}"
-        meant, after = self.interpret(text, program, replace(dialogue, scope=scope))
-        choices = {k: v for k, v in after.scope.choices.items() if k != pending.phrase}
-        after = replace(after, scope=replace(after.scope, choices=choices))
+            scope = replace(dialogue.scope, choices={})
+            return Interpretation(utterance, "answer", say), replace(dialogue, scope=scope)
+        choices = {**dialogue.scope.choices, pending.phrase: chosen}
+        answered = replace(dialogue, scope=replace(dialogue.scope, choices=choices))
+        meant, after = self.interpret(pending.utterance, program, answered)
+        if after.pending is None:  # Another question of the same utterance needs this answer again.
+            after = replace(after, scope=replace(after.scope, choices={}))
         return replace(meant, utterance=utterance), after
-
-    def _kind(self, entity: str) -> str:
-        known = self.world.entities.get(entity)
-        return known.type if known else ""
 
     def _not_understood(
         self,
@@ -280,7 +301,7 @@ class Understanding:
     ) -> Interpretation:
         for cut in good:
             try:
-                steps_of(cut, self.resolver, dialogue.scope)
+                self._steps(cut, self._builder(program, dialogue), dialogue)
             except Misfit as misfit:
                 return self.refused(utterance, str(misfit))
             except Unclear:
@@ -300,6 +321,8 @@ def _says_something(cut: Cut) -> bool:
     return any(item.role in ("goal", "condition") for item in cut.items)
 
 
+_KEEPING = ("help", "repeat", "read-program", "read-plan", "status", "yes")
+"""Commands after which an open question can still be answered."""
 _COMMAND_SAYS = {
     "stop": "Stopping.",
     "pause": "Pausing.",

@@ -37,6 +37,12 @@ class GrammarWording:
             return f"{owner}'s {entity.spoken}"
         return f"the {entity.spoken}"
 
+    def option(self, name: str, spoken: str) -> str:
+        """An entity as one of several that are offered: "the table", "room 1", "mr brown"."""
+        entity = self._world.entities.get(name)
+        bare = entity is None or name in _BARE or entity.type == "message" or self._is_named(name)
+        return spoken if bare else f"the {spoken}"
+
     def fact(self, literal: Formula) -> str:
         """A clause: "the tray is on the table"."""
         if isinstance(literal, Literal):
