@@ -49,7 +49,9 @@ def run(arguments: Namespace) -> int:
         order = RunOrder(
             program.automaton, plan, session.planner, people, arguments.live, arguments.log
         )
-        commands = Keyboard(session.understanding, program.automaton).commands if arguments.live else tuple
+        commands = (
+            Keyboard(session.understanding, program.automaton).commands if arguments.live else tuple
+        )
         report = run_simulated(
             order, confirmed=True, show=shower(arguments.json), commands=commands
         )

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from polaris_nl.language.dialogue import Pending
 from polaris_nl.language.grammar import Common
 from polaris_nl.language.mention import Mention
-from polaris_nl.language.resolve import EVERY_ONE, Misfit, Resolver, Scope, Unclear
+from polaris_nl.language.resolve import EVERY_ONE, Misfit, Resolver, Scope
 from polaris_nl.language.tokens import BREAK, COMMA, phrase
 from polaris_nl.language.wording import GrammarWording
 from polaris_nl.model.text import listed
@@ -60,9 +60,7 @@ class Questions:
                 return found
         return None
 
-    def _by_words(
-        self, tokens: Sequence[str], options: Sequence[tuple[str, str]]
-    ) -> str | None:
+    def _by_words(self, tokens: Sequence[str], options: Sequence[tuple[str, str]]) -> str | None:
         """The option that is meant by its number or by words of its name."""
         core = [t for t in tokens if t not in _SMALL]
         if not core and options and tuple(tokens) in _FIRST:

@@ -221,9 +221,7 @@ class Resolver:
         narrowed = replace(mention, pronoun="", candidates=tuple(candidates))
         return tuple(self._fitting(narrowed, (), scope))
 
-    def _several(
-        self, names: Sequence[str], mention: Mention, scope: Scope, number: int
-    ) -> Meant:
+    def _several(self, names: Sequence[str], mention: Mention, scope: Scope, number: int) -> Meant:
         """A number of entities: what was answered, or a question."""
         chosen = scope.choices.get(mention.text, ())
         if len(chosen) == number and set(chosen) <= set(names):

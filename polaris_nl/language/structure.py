@@ -128,9 +128,7 @@ class Builder:
         self._edited(SetGoals(checkpoint.id, goals), checkpoint.id)
         self._edited(RenameCheckpoint(checkpoint.id, name), checkpoint.id)
 
-    def _add(
-        self, goals: tuple[Goal, ...], when: tuple[Literal, ...], source: str
-    ) -> None:
+    def _add(self, goals: tuple[Goal, ...], when: tuple[Literal, ...], source: str) -> None:
         checkpoint = self._checkpoint(goals, when)
         transition = Transition(self.program.fresh_transition_id(), source, checkpoint.id, when)
         self._edited(AddCheckpoint(checkpoint, transition), checkpoint.id)
@@ -198,6 +196,9 @@ def steps_of(
     """The steps that a cut utterance asks for, in order.
 
     Args:
+        cut: the utterance, cut into clauses.
+        resolver: finds the entities that are meant.
+        scope: what has been mentioned before.
         branched: there is a branch already that "otherwise" can belong to.
 
     Returns:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 from pathlib import Path
 from typing import Any
 
@@ -120,7 +119,7 @@ def test_a_failed_write_keeps_the_old_file(tmp_path: Path) -> None:
     with pytest.raises(FileError, match="Can't write"):
         write_program(program_of(EXAMPLE), missing)
     assert path.read_bytes() == before
-    assert os.listdir(folder) == ["p.json"]
+    assert [p.name for p in folder.iterdir()] == ["p.json"]
 
 
 def test_a_sound_program_has_no_faults(care_home: World) -> None:
@@ -193,7 +192,7 @@ HOME = (parse_literal("(robot-at home)"),)
             automaton(
                 [start(), Checkpoint("c1", "x"), Checkpoint("c2", "y")],
                 [
-                    Transition("t1", "c0", "c1", HOME + (parse_literal("(open cupboard)"),)),
+                    Transition("t1", "c0", "c1", (*HOME, parse_literal("(open cupboard)"))),
                     Transition("t2", "c0", "c2", (parse_literal("(open cupboard)"), *HOME)),
                 ],
             ),

@@ -23,9 +23,9 @@ from polaris_nl.execution.events import (
     RunStarted,
     StateChanged,
 )
-from polaris_nl.execution.state import HumanCommand
 from polaris_nl.execution.runner import run
 from polaris_nl.execution.simulation import Fault
+from polaris_nl.execution.state import HumanCommand
 from polaris_nl.logs.review import story
 from polaris_nl.model.errors import RunError
 from polaris_nl.planning.planner import Planner

@@ -47,7 +47,7 @@ def test_the_outline_with_its_actions(
     assert all(len(row.text) <= 80 for row in rows)
     numbers = [row.action for row in rows if row.action is not None]
     assert numbers == list(range(1, plan.action_count + 1))
-    assert [c for c in first_numbers(plan)] == ["c1", "c2", "c3", "c4"]
+    assert list(first_numbers(plan)) == ["c1", "c2", "c3", "c4"]
     if glyphs is ASCII:
         assert text_of(rows).isascii()
 

@@ -82,7 +82,8 @@ from polaris_nl.model.world_file import load_world
 from polaris_nl.session import Session
 with Session(load_world("care-home")) as session:
     session.say("go to the kitchen")
-sys.exit(" ".join(n for n in ("unified_planning", "up_fast_downward", "vosk", "textual") if n in sys.modules) or 0)
+heavy = ("unified_planning", "up_fast_downward", "vosk", "textual")
+sys.exit(" ".join(name for name in heavy if name in sys.modules) or 0)
 """
     python(script)
 
@@ -123,7 +124,9 @@ def test_no_file_names_a_machine_or_a_registry() -> None:
     tracked = subprocess.run(
         ["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True, timeout=30
     ).stdout.split()
-    bad = re.compile(r"/(root|work|home/[a-z]+)/|" + "pypi" + r"\.org|files\.pythonhosted|repo1?\.maven")
+    bad = re.compile(
+        r"/(root|work|home/[a-z]+)/|" + "pypi" + r"\.org|files\.pythonhosted|repo1?\.maven"
+    )
     for name in tracked:
         path = ROOT / name
         if path.suffix in (".pgm", ".flac") or not path.is_file():
