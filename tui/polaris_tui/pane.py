@@ -1,0 +1,290 @@
+"""A pane of rows that repaints only the characters that changed.
+
+Textual repaints whole widgets; over a slow line that is felt. A pane keeps what each of its lines
+shows now, and refreshes the columns in between the first and the last that differ.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+from rich.cells import cell_len, set_cell_size
+from rich.segment import Segment
+from rich.style import Style
+from textual import events
+from textual.binding import Binding, BindingType
+from textual.geometry import Region
+from textual.message import Message
+from textual.strip import Strip
+from textual.widget import Widget
+
+from polaris_nl.render.glyphs import Glyphs, plain
+from polaris_nl.render.layout import Row
+from polaris_tui.progress import Place
+from polaris_tui.styles import CURSOR, MARK, STYLES
+
+Draw = Callable[[int, int], Sequence[Row]]
+"""Makes the rows for a width and a height in characters."""
+
+GUTTER = 1
+"""Columns left of the rows, for the sign of what the robot does now."""
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """What one line of the screen shows: text as wide as the pane, in one style."""
+
+    text: str
+    style: Style
+
+
+class Pane(Widget, can_focus=True):
+    """Rows under a heading, with a cursor while it has the focus.
+
+    Args:
+        glyphs: the signs to draw with.
+        follows: stays at the last row, unless the user has scrolled up.
+        focusable: the user can go there, and scroll.
+        id: the widget's id.
+    """
+
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("up", "move(-1)", show=False),
+        Binding("down", "move(1)", show=False),
+        Binding("pageup", "page(-1)", show=False),
+        Binding("pagedown", "page(1)", show=False),
+        Binding("home", "go_to_end(False)", show=False),
+        Binding("end", "go_to_end(True)", show=False),
+        Binding("enter", "choose", show=False),
+    ]
+
+    class Typed(Message):
+        """A character was typed here that is meant for the input line."""
+
+        def __init__(self, character: str) -> None:
+            super().__init__()
+            self.character = character
+
+    class Chosen(Message):
+        """Enter was pressed on a row."""
+
+        def __init__(self, pane: Pane, row: Row) -> None:
+            super().__init__()
+            self.pane = pane
+            self.row = row
+
+    def __init__(
+        self, glyphs: Glyphs, *, follows: bool = False, focusable: bool = True, id: str
+    ) -> None:
+        super().__init__(id=id)
+        self.can_focus = focusable
+        self._glyphs = glyphs
+        self._follows = follows
+        self._draw: Draw = lambda width, height: ()
+        self._rows: tuple[Row, ...] = ()
+        self._heading = ""
+        self._top = 0
+        self._cursor = 0
+        self._marked: Place | None = None
+        self._mark: int | None = None
+        self._point: int | None = None  # the row that should be in sight
+        self._lines: list[Line] = []
+
+    @property
+    def text_width(self) -> int:
+        """The characters that a row may have."""
+        return max(self.size.width - GUTTER, 1)
+
+    @property
+    def text_height(self) -> int:
+        """The rows that are visible at once."""
+        return max(self.size.height - (1 if self._heading else 0), 1)
+
+    @property
+    def rows(self) -> tuple[Row, ...]:
+        """All rows, visible or not."""
+        return self._rows
+
+    # What is shown
+
+    def show(self, draw: Draw, heading: str = "", marked: Place | None = None) -> None:
+        """Shows other rows; cursor and window stay with what they were at.
+
+        Args:
+            draw: makes the new rows; it is asked again when the pane gets another size.
+            heading: the title above them; "" for none.
+            marked: what the robot is at, or None.
+        """
+        at_end = self._top >= self._last_top
+        moved, self._marked = marked != self._marked, marked
+        self._draw, self._heading = draw, heading
+        before = self._rows
+        self._redraw()
+        self._keep_cursor(before)
+        if self._follows:
+            self._top = self._last_top if at_end else self._top
+        elif not self.has_focus and (moved or before != self._rows):
+            self._point = self._mark if moved else self._news(before)
+            self._reveal(self._point)
+        self._top = max(0, min(self._top, self._last_top))
+        self._repaint()
+
+    def _redraw(self) -> None:
+        self._rows = tuple(self._draw(self.text_width, self.text_height))
+        self._mark = self._marked_row()
+
+    def reset(self) -> None:
+        """Goes back to the first row."""
+        self._top = self._cursor = 0
+        self._point = None
+
+    def scroll_rows(self, pages: int) -> None:
+        """Scrolls by windows; a row of the one before stays in sight."""
+        self._point = None
+        step = max(self.text_height - 1, 1) * pages
+        self._top = max(0, min(self._top + step, self._last_top))
+        self._cursor = max(self._top, min(self._cursor, self._top + self.text_height - 1))
+        self._repaint()
+
+    @property
+    def _last_top(self) -> int:
+        return max(len(self._rows) - self.text_height, 0)
+
+    def _keep_cursor(self, before: tuple[Row, ...]) -> None:
+        old = before[self._cursor] if self._cursor < len(before) else None
+        if old is not None and old.checkpoint is not None:
+            key = (old.checkpoint, old.action)
+            same = [i for i, r in enumerate(self._rows) if (r.checkpoint, r.action) == key]
+            if same:
+                self._cursor = min(same, key=lambda i: abs(i - self._cursor))
+        self._cursor = max(0, min(self._cursor, len(self._rows) - 1))
+
+    def _news(self, before: tuple[Row, ...]) -> int | None:
+        known = {(row.text, row.checkpoint) for row in before}
+        fresh = (i for i, r in enumerate(self._rows) if (r.text, r.checkpoint) not in known)
+        return next(fresh, None) if before else None
+
+    def _marked_row(self) -> int | None:
+        """The first of the last rows in a row that are about it: a conditional stands higher up."""
+        rows = [i for i, r in enumerate(self._rows) if (r.checkpoint, r.action) == self._marked]
+        return next((i for i in reversed(rows) if i - 1 not in rows), None)
+
+    def _reveal(self, row: int | None) -> None:
+        """Scrolls where a row is out of sight; by half a window, so that it happens seldom."""
+        if row is None or self._top <= row < self._top + self.text_height:
+            return
+        self._top = max(0, min(row - self.text_height // 2, self._last_top))
+
+    # Lines of the screen
+
+    def _painted(self) -> list[Line]:
+        width, height = self.size.width, self.size.height
+        lines = [Line(self._title(width), STYLES["strong"])] if self._heading else []
+        numbers = range(self._top, self._top + height - len(lines))
+        lines += [self._line(number, width) for number in numbers]
+        return lines[:height]
+
+    def _line(self, number: int, width: int) -> Line:
+        if number >= len(self._rows):
+            return Line(" " * width, STYLES[""])
+        row = self._rows[number]
+        here = number == self._mark
+        style = STYLES[row.tone] + (MARK if here else Style())
+        if self.has_focus and number == self._cursor:
+            style += CURSOR
+        text = (">" if here else " ") + plain(row.text)
+        return Line(set_cell_size(text, width), style)
+
+    def _title(self, width: int) -> str:
+        dash = self._glyphs.dash
+        sign = ">" if self.has_focus else dash
+        title = f"{sign} {plain(self._heading)} "
+        last = self._top + self.text_height
+        hidden = len(self._rows) > self.text_height
+        place = f" {self._top + 1}-{min(last, len(self._rows))}/{len(self._rows)} {dash}"
+        room = max(width - len(place), 0) if hidden else width
+        title = title + dash * max(room - cell_len(title), 0)
+        return set_cell_size(set_cell_size(title, room) + (place if hidden else ""), width)
+
+    def _repaint(self) -> None:
+        before, self._lines = self._lines, self._painted()
+        if len(before) != len(self._lines):
+            self.refresh()
+            return
+        dirty = [
+            Region(span[0], y, span[1] - span[0], 1)
+            for y, (old, new) in enumerate(zip(before, self._lines, strict=True))
+            if (span := _difference(old, new)) is not None
+        ]
+        if dirty:
+            self.refresh(*dirty)
+
+    def render_line(self, y: int) -> Strip:
+        """One line, for Textual."""
+        if y >= len(self._lines):
+            return Strip.blank(self.size.width, self.rich_style)
+        line = self._lines[y]
+        return Strip([Segment(line.text, self.rich_style + line.style)], self.size.width)
+
+    def on_resize(self, event: events.Resize) -> None:
+        """Draws for the new size."""
+        before = self._rows
+        self._redraw()
+        self._keep_cursor(before)
+        self._top = self._last_top if self._follows else min(self._top, self._last_top)
+        self._reveal(self._cursor if self.has_focus else self._point)
+        self._lines = self._painted()
+        self.refresh()
+
+    # Keys
+
+    def on_key(self, event: events.Key) -> None:
+        """Sends what is typed to the input line."""
+        if event.is_printable and event.character:
+            event.stop()
+            self.post_message(self.Typed(event.character))
+
+    def on_focus(self) -> None:
+        """Shows the cursor, inside the window."""
+        if self._follows:
+            self._cursor = len(self._rows) - 1
+        self._cursor = max(self._top, min(self._cursor, self._top + self.text_height - 1))
+        self._cursor = max(0, min(self._cursor, len(self._rows) - 1))
+        self._repaint()
+
+    def on_blur(self) -> None:
+        """Hides the cursor."""
+        self._repaint()
+
+    def action_move(self, by: int) -> None:
+        """Moves the cursor."""
+        self._cursor = max(0, min(self._cursor + by, len(self._rows) - 1))
+        self._reveal(self._cursor)
+        self._repaint()
+
+    def action_page(self, pages: int) -> None:
+        """Scrolls by a window."""
+        self.scroll_rows(pages)
+
+    def action_go_to_end(self, last: bool) -> None:
+        """Goes to the first or the last row."""
+        self.action_move(len(self._rows) if last else -len(self._rows))
+
+    def action_choose(self) -> None:
+        """Asks about the row at the cursor."""
+        if self._cursor < len(self._rows):
+            self.post_message(self.Chosen(self, self._rows[self._cursor]))
+
+
+def _difference(old: Line, new: Line) -> tuple[int, int] | None:
+    """The columns where two lines differ, from and to, or None."""
+    if old == new:
+        return None
+    width = cell_len(new.text)
+    wide = width != len(new.text) or cell_len(old.text) != len(old.text)
+    if old.style != new.style or len(old.text) != len(new.text) or wide:
+        return 0, width
+    differ = [x for x, (a, b) in enumerate(zip(old.text, new.text, strict=True)) if a != b]
+    return differ[0], differ[-1] + 1

@@ -1,0 +1,113 @@
+"""A run in the simulated world, in a thread of its own."""
+
+from __future__ import annotations
+
+import queue
+import threading
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from textual.message import Message
+
+from polaris_nl.execution.events import Event
+from polaris_nl.execution.state import HumanCommand
+from polaris_nl.model.errors import PolarisError
+from polaris_nl.planning.result import BranchingPlan
+from polaris_nl.session import Session
+from polaris_nl.snapshot import Snapshot
+from polaris_tui.messages import Happened, RunOver
+from polaris_tui.transcript import Entry
+
+if TYPE_CHECKING:
+    from polaris_nl.runs import RunReport
+
+
+class Running:
+    """One run, after its yes.
+
+    Args:
+        session: whose world and planner it uses.
+        snapshot: the program that was read out, and the plan for it.
+        plan: that plan.
+        tell: is given messages; called in the run's thread.
+        live: in real time; otherwise as fast as the machine can.
+        log: where the log is written; a new one in the log folder by default.
+    """
+
+    def __init__(
+        self,
+        session: Session,
+        snapshot: Snapshot,
+        plan: BranchingPlan,
+        tell: Callable[[Message], object],
+        live: bool = True,
+        log: Path | None = None,
+    ) -> None:
+        self.snapshot = snapshot
+        self.plan = plan
+        self._session = session
+        self._tell = tell
+        self._live = live
+        self._log = log
+        self._commands: queue.SimpleQueue[HumanCommand] = queue.SimpleQueue()
+        self._thread = threading.Thread(target=self._run, name="run", daemon=True)
+
+    def start(self) -> None:
+        """Starts it."""
+        self._thread.start()
+
+    @property
+    def active(self) -> bool:
+        """Whether it goes on."""
+        return self._thread.is_alive()
+
+    def command(self, command: HumanCommand) -> None:
+        """Commands the run; it listens many times a second."""
+        self._commands.put(command)
+
+    def wait(self, seconds: float) -> None:
+        """Waits for its end."""
+        self._thread.join(seconds)
+
+    def _taken(self) -> Iterable[HumanCommand]:
+        while not self._commands.empty():
+            yield self._commands.get()
+
+    def _run(self) -> None:
+        try:
+            report = self._carried_out()
+        except PolarisError as error:
+            self._tell(RunOver(Entry(str(error), "! ", "bad")))
+        except Exception as error:
+            text = f"The run went wrong and was stopped ({type(error).__name__}: {error})."
+            self._tell(RunOver(Entry(text, "! ", "bad")))
+        else:
+            self._tell(RunOver(*self._afterwards(report)))
+
+    def _carried_out(self) -> RunReport:
+        from polaris_nl.runs import RunOrder, run_simulated
+
+        order = RunOrder(
+            self.snapshot.automaton,
+            self.plan,
+            self._session.planner,
+            live=self._live,
+            log=self._log,
+        )
+        return run_simulated(order, confirmed=True, show=self._show, commands=self._taken)
+
+    def _show(self, event: Event) -> None:
+        self._tell(Happened(event))
+
+    def _afterwards(self, report: RunReport) -> Iterable[Entry]:
+        from polaris_nl.commands.common import shown_path
+        from polaris_nl.execution.runner import objectives_met
+
+        met = objectives_met(self._session.world, report.result.beliefs)
+        done = [objective.name for objective, holds in met if holds]
+        if met:
+            yield Entry(f"Objectives: {len(done)} of {len(met)} ({', '.join(done) or 'none'}).")
+        yield Entry(f"Read the run back with: polaris-nl review {shown_path(report.log)}")
+        if report.failure:
+            yield Entry(report.failure, "! ", "bad")
