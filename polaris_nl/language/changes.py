@@ -1,285 +1,271 @@
-"""Edits of what is there: corrections of the last step, and changes of checkpoints by name."""
+"""Edits of what is there: changes of checkpoints by name, by number, or by what is done there."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from polaris_nl.automaton.automaton import START, Automaton, Checkpoint, Transition
 from polaris_nl.automaton.edits import (
-    AddCheckpoint,
     Connect,
-    Edit,
-    InsertCheckpoint,
     MoveCheckpoint,
-    RemoveCheckpoint,
     RenameCheckpoint,
     SetConditional,
     SetGoals,
     apply_all,
 )
-from polaris_nl.language.dialogue import Dialogue
-from polaris_nl.language.generate import goals_in_words
+from polaris_nl.language.dialogue import Dialogue, Latest
+from polaris_nl.language.generate import goals_in_words, steps_in_words
 from polaris_nl.language.interpretation import Interpretation
-from polaris_nl.language.mention import Mention
-from polaris_nl.language.patterns import Match, matches_of
+from polaris_nl.language.patterns import Match, Patterns
 from polaris_nl.language.queries import _condition
+from polaris_nl.language.reading import steps_of
+from polaris_nl.language.references import meant
+from polaris_nl.language.reshaping import (
+    Reshaped,
+    conditional,
+    cut_after,
+    merged,
+    moved_before,
+    moved_behind,
+    otherwise,
+    put_after,
+    put_before,
+    put_between,
+    removed_latest,
+    removed_with_rest,
+    several_removed,
+    split,
+    swapped,
+    unconditional,
+)
 from polaris_nl.language.resolve import Misfit, Unclear
-from polaris_nl.language.structure import Step, steps_of
+from polaris_nl.language.structure import Step
+from polaris_nl.language.tokens import BREAK, COMMA
 from polaris_nl.model.errors import EditError
-from polaris_nl.model.formula import Formula, Goal, Literal, bind
-from polaris_nl.model.text import sentence
+from polaris_nl.model.formula import Goal, Literal
+from polaris_nl.model.text import listed, sentence
 
 if TYPE_CHECKING:
     from polaris_nl.language.understanding import Understanding
 
-Meant = tuple[Interpretation, Dialogue]
+MOST_NAMED = 8
+"""Steps that a refusal names."""
+_REFUSABLE = (
+    "remove", "rename", "move", "move-before", "swap", "merge", "split", "cut-after", "remove-rest", "connect",
+    "else", "unconditional", "between",
+)  # fmt: skip
+NO_STEPS = "There are no steps yet; say what the robot should achieve first."
+NOTHING_CHANGES = "It is like that already; nothing changes."
+MeantThen = tuple[Interpretation, Dialogue]
+
+
+def steps_there(program: Automaton) -> str:
+    """A sentence that names the steps of a program."""
+    made = [c.name for c in program.checkpoints.values() if c.id != START]
+    more = f" and {len(made) - MOST_NAMED} more" if len(made) > MOST_NAMED else ""
+    if len(made) == 1:
+        return f"The only step is {made[0]}."
+    return f"The steps are {listed(made[:MOST_NAMED])}{more}."
 
 
 class Changes:
-    """Reads corrections and edits for one `Understanding`."""
+    """Reads edits for one `Understanding`."""
 
     def __init__(self, language: Understanding) -> None:
         self._language = language
-        self._corrections = language.grammar.common.templates("corrections")
-
-    # Corrections: "no, I meant the blue cup"
-
-    def corrected(
-        self,
-        utterance: str,
-        tokens: Sequence[str],
-        mentions: Sequence[Sequence[Mention]],
-        program: Automaton,
-        dialogue: Dialogue,
-    ) -> Meant | None:
-        """A correction of what was just done, or None where the utterance is none."""
-        touched = [c for c in dialogue.touched if c in program.checkpoints]
-        plain = [t for t in tokens if t != ","]
-        if plain != list(tokens):
-            mentions = self._language.mentions(plain)
-        for template in self._corrections:
-            for match in matches_of("correct", template, plain, mentions, program, ()):
-                if not touched:
-                    continue
-                result = self._replaced(utterance, match, touched, program, dialogue)
-                if result is not None:
-                    return result
-        return None
-
-    def _replaced(
-        self,
-        utterance: str,
-        match: Match,
-        touched: Sequence[str],
-        program: Automaton,
-        dialogue: Dialogue,
-    ) -> Meant | None:
-        language = self._language
-        new, old = match.slots.get("x"), match.slots.get("y")
-        assert isinstance(new, Mention)
-        try:
-            meant = self._entities(new, touched, program, dialogue)
-        except Unclear as unclear:
-            return language.asked(utterance, unclear, dialogue)
-        except Misfit:
-            return None
-        if len(meant) != 1:
-            return None
-        replaced = self._replaceable(meant[0], old, touched, program, dialogue)
-        if replaced is None:
-            return None
-        edits = list(_swapped(program, touched, replaced, meant[0]))
-        if not edits:
-            return None
-        after = replace(dialogue, scope=dialogue.scope.after(meant))
-        say = sentence(
-            f"I've put {language.wording.entity(meant[0])} in place of {language.wording.entity(replaced)}"
-        )
-        return Interpretation(utterance, "applied", say, tuple(edits)), after
-
-    def _entities(
-        self, mention: Mention, touched: Sequence[str], program: Automaton, dialogue: Dialogue
-    ) -> tuple[str, ...]:
-        """What is meant instead: "the other table" is not the one that is there."""
-        resolver = self._language.resolver
-        if not mention.other:
-            return resolver.meant(
-                replace(mention, pronoun="one") if mention.pronoun == "one" else mention,
-                (),
-                dialogue.scope,
-            ).entities
-        used = _used(program, touched)
-        fitting = [c.entity for c in mention.candidates if c.entity not in used]
-        if mention.candidates and not fitting:
-            raise Misfit("There is no other one.")
-        kept = replace(
-            mention,
-            other=False,
-            candidates=tuple(c for c in mention.candidates if c.entity not in used),
-        )
-        return resolver._one(
-            [c.entity for c in kept.candidates], kept, replace(dialogue.scope, referents=())
-        ).entities
-
-    def _replaceable(
-        self, new: str, old: object, touched: Sequence[str], program: Automaton, dialogue: Dialogue
-    ) -> str | None:
-        """The entity that a correction is about: the one named, or the latest of the same type."""
-        world = self._language.world
-        used = [u for u in _used(program, touched) if u in world.entities]
-        if isinstance(old, Mention):
-            named = {c.entity for c in old.candidates}
-            chosen = [u for u in used if u in named]
-            if old.pronoun == "one":
-                chosen = [u for u in used if world.entities[u].type == world.entities[new].type]
-            return chosen[0] if chosen else None
-        kind, noun = world.entities[new].type, world.entities[new].noun
-        same = [u for u in used if world.entities[u].type == kind and u != new]
-        nouns = [u for u in same if noun and (world.entities[u].noun == noun or u == noun)]
-        return next(iter(nouns or same), None)
-
-    # Edits: "rename fetched to served", "before home, open the cupboard"
 
     def edited(
-        self,
-        utterance: str,
-        matches: Iterable[Match],
-        tokens: Sequence[str],
-        program: Automaton,
-        dialogue: Dialogue,
-    ) -> Meant | None:
+        self, utterance: str, matches: Iterable[Match], program: Automaton, dialogue: Dialogue
+    ) -> MeantThen | None:
         """An edit of checkpoints that are there, or None where the utterance is none."""
+        question: Unclear | None = None
         for match in matches:
             try:
-                edits, say, touched = self._edits(match, tokens, program, dialogue)
+                edits, say, touched = self._edits(match, program, dialogue)
+                changed = apply_all(program, edits)
             except Unclear as unclear:
-                return self._language.asked(utterance, unclear, dialogue)
+                question = question or unclear
+                continue
             except Misfit:
                 continue
-            try:
-                changed = apply_all(program, edits)
             except EditError as error:
-                return self._language.refused(utterance, str(error)), dialogue
+                return self._language.refused(utterance, sentence(str(error))), dialogue
             if changed == program:
-                return Interpretation(
-                    utterance, "answer", "It is like that already; nothing changes."
-                ), dialogue
+                return Interpretation(utterance, "answer", NOTHING_CHANGES), dialogue
             kept = tuple(t for t in touched if t in changed.checkpoints)
             here = _going_on(kept, program, changed, dialogue)
-            after = replace(dialogue, here=here, touched=kept)
+            spans = {name: (found.start, found.end) for name, found in match.references.items()}
+            latest = Latest(
+                tuple(match.tokens),
+                program,
+                changed,
+                replace(dialogue, latest=None),
+                match.intent,
+                spans,
+            )
+            after = replace(dialogue, here=here, touched=kept, latest=latest)
             return Interpretation(utterance, "applied", sentence(say), tuple(edits)), after
+        if question is not None:
+            return self._language.asked(utterance, question, dialogue)
         return None
 
-    def _edits(
-        self, match: Match, tokens: Sequence[str], program: Automaton, dialogue: Dialogue
-    ) -> tuple[list[Edit], str, list[str]]:
+    def missing(self, tokens: Sequence[str], patterns: Patterns, program: Automaton) -> str:
+        """Why an edit of a checkpoint that isn't there can't be done, or ""."""
+        found = next(patterns.unnamed(tokens, _REFUSABLE), None)
+        if found is None:
+            return ""
+        if len(program.checkpoints) == 1:
+            return NO_STEPS
+        words = " ".join(w for w in found[1] if w not in (COMMA, BREAK))
+        return f'There is no step "{words}". {steps_there(program)}'
+
+    def _edits(self, match: Match, program: Automaton, dialogue: Dialogue) -> Reshaped:
         """The edits of a match, what to say, and the checkpoints they touch.
 
         Raises:
             Misfit: the match is not what was meant.
             Unclear: a question has to be asked.
+            EditError: it can't be done.
         """
-        slots = match.slots
-        if "k" not in slots:
-            raise Misfit("")
-        this = str(slots["k"])
+        intent, slots = match.intent, match.slots
+        named = {
+            name: meant(found, match.tokens, program, dialogue.scope)
+            for name, found in match.references.items()
+        }
+        latest = _latest(program, dialogue)
+        if intent == "remove-latest":
+            return removed_latest(program, int(str(slots["q"])), latest)
+        if intent in ("at-start", "before-that"):
+            return self._put(match, START if intent == "at-start" else latest, program, dialogue)
+        this = named.get("k", latest)
+        if this == START and intent in _NOT_START:
+            raise EditError(_NOT_START[intent])
         name = program.checkpoints[this].name
-        if match.intent == "remove":
-            alone = [RemoveCheckpoint(this, subtree=False)]
-            return list(alone), f"{name} is gone", []
-        if match.intent == "rename":
-            span = slots["n"]
-            assert isinstance(span, tuple)
-            wanted = " ".join(tokens[span[0] : span[1]])
-            return [RenameCheckpoint(this, wanted)], f"{name} is called {wanted} now", [this]
-        if match.intent == "move":
-            other = str(slots["l"])
-            after = program.checkpoints[other].name
-            return [MoveCheckpoint(this, other)], f"{name} comes after {after} now", [this]
-        if match.intent == "connect":
-            return self._connected(match, tokens, program, dialogue)
-        if match.intent == "else":
-            incoming = program.incoming(this)
-            if incoming is None:
-                raise Misfit("")
-            return [SetConditional(incoming.id, ())], f"{name} is what happens otherwise", [this]
-        goals, when = self._goals(tokens, slots.get("g"), program, dialogue)
-        return self._with_goals(match.intent, this, goals, when, program)
-
-    def _with_goals(
-        self,
-        intent: str,
-        this: str,
-        goals: tuple[Goal, ...],
-        when: tuple[Literal, ...],
-        program: Automaton,
-    ) -> tuple[list[Edit], str, list[str]]:
-        language = self._language
-        name = program.checkpoints[this].name
-        words = goals_in_words(goals, language.wording)
-        new = Checkpoint(
-            program.fresh_checkpoint_id(), language.names.checkpoint(goals, when, program), goals
-        )
-        arrow = program.fresh_transition_id()
-        if intent == "replace":
-            return [SetGoals(this, goals)], f"in {name}: {words}", [this]
-        if intent == "also":
-            kept = program.checkpoints[this].goals
-            return [SetGoals(this, (*kept, *goals))], f"in {name}, also {words}", [this]
-        if intent == "before":
-            incoming = program.incoming(this)
-            if incoming is None:
-                raise Misfit("")
-            return (
-                [InsertCheckpoint(new, incoming.id, arrow, when)],
-                f"before {name}, {words}",
-                [new.id],
+        if intent == "remove":
+            return several_removed(program, [named[slot] for slot in ("k", "l") if slot in named])
+        if intent == "rename":
+            return _renamed(match, program, this)
+        if intent in _ALONE:
+            return _ALONE[intent](program, this)
+        if intent == "split":
+            return split(program, this, self._language.names)
+        if intent in _TOGETHER:
+            return _TOGETHER[intent](program, *_pair(intent, named, latest, program))
+        if intent == "connect":
+            return self._connected(match, this, named["l"], program, dialogue)
+        if intent == "condition":
+            when = _condition(
+                self._language, match.tokens, slots["c"], dialogue.scope, introduced=True
             )
-        outgoing = program.outgoing(this)
-        if len(outgoing) == 1 and not outgoing[0].when and not when:
-            return (
-                [InsertCheckpoint(new, outgoing[0].id, arrow)],
-                f"after {name}, {words}",
-                [new.id],
-            )
-        return (
-            [AddCheckpoint(new, Transition(arrow, this, new.id, when))],
-            f"after {name}, {words}",
-            [new.id],
-        )
-
-    def _connected(
-        self, match: Match, tokens: Sequence[str], program: Automaton, dialogue: Dialogue
-    ) -> tuple[list[Edit], str, list[str]]:
-        source, target = str(match.slots["k"]), str(match.slots["l"])
-        when: tuple[Literal, ...] = ()
-        if "f" in match.slots:
-            when = _condition(self._language, tokens, match.slots["f"], dialogue.scope)
             if not when:
                 raise Misfit("")
+            step = Step(program.checkpoints[this].goals, when, "condition")
+            return conditional(program, this, when, steps_in_words([step], self._language.wording))
+        if intent in ("replace", "also"):
+            goals, _ = self.goals(match.tokens, slots.get("g"), dialogue)
+            words = goals_in_words(goals, self._language.wording)
+            if intent == "also":
+                kept = program.checkpoints[this].goals
+                return [SetGoals(this, (*kept, *goals))], f"in {name}, also {words}", [this]
+            incoming = program.incoming(this)
+            names = self._language.names.renamed(
+                program, this, goals, incoming.when if incoming else ()
+            )
+            return [SetGoals(this, goals), *names], f"in {name}: {words}", [this]
+        return self._put(match, this, program, dialogue, named.get("l"))
+
+    def _put(
+        self,
+        match: Match,
+        this: str,
+        program: Automaton,
+        dialogue: Dialogue,
+        other: str | None = None,
+    ) -> Reshaped:
+        """New steps before, after or between what is there."""
+        goals, when = self.goals(match.tokens, match.slots.get("g"), dialogue)
+        name = program.checkpoints[this].name
+        if match.intent == "before-that" and this == START:
+            raise Misfit("")
+        new = Checkpoint(
+            program.fresh_checkpoint_id(),
+            self._language.names.checkpoint(goals, when, program),
+            goals,
+        )
+        words = goals_in_words(goals, self._language.wording)
+        if match.intent == "between" and other is not None:
+            two = program.checkpoints[other].name
+            edits = put_between(program, new, this, other)
+            return edits, f"between {name} and {two}, {words}", [new.id]
+        if match.intent == "at-start":
+            return put_after(program, new, START), f"first, {words}", [new.id]
+        if match.intent in ("before", "before-that"):
+            return put_before(program, new, this, when), f"before {name}, {words}", [new.id]
+        return put_after(program, new, this, when), f"after {name}, {words}", [new.id]
+
+    def _connected(
+        self, match: Match, source: str, target: str, program: Automaton, dialogue: Dialogue
+    ) -> Reshaped:
+        when: tuple[Literal, ...] = ()
+        if "f" in match.slots:
+            when = self._event(match, source, program, dialogue)
         one, two = program.checkpoints[source].name, program.checkpoints[target].name
         incoming = program.incoming(target)
         say = f"{two} comes after {one} now"
         if incoming is None:
-            return (
-                [Connect(Transition(program.fresh_transition_id(), source, target, when))],
-                say,
-                [target],
-            )
+            arrow = Transition(program.fresh_transition_id(), source, target, when)
+            return [Connect(arrow)], say, [target]
         if incoming.source == source:
             return [SetConditional(incoming.id, when)], say, [target]
         return [MoveCheckpoint(target, source, when)], say, [target]
 
-    def _goals(
-        self, tokens: Sequence[str], span: object, program: Automaton, dialogue: Dialogue
-    ) -> tuple[tuple[Goal, ...], tuple[Literal, ...]]:
+    def _event(
+        self, match: Match, source: str, program: Automaton, dialogue: Dialogue
+    ) -> tuple[Literal, ...]:
+        """The condition of a connection: "she dismisses it", or "dismissed" alone, of what was said there."""
+        language, span = self._language, match.slots["f"]
+        when = _condition(language, match.tokens, span, dialogue.scope)
+        if when:
+            return when
         assert isinstance(span, tuple)
-        part = list(tokens[span[0] : span[1]])
+        word = " ".join(match.tokens[span[0] : span[1]])
+        predicate = language.world.domain.predicates.get(word)
+        if predicate is None or len(predicate.parameters) != 1:
+            raise Misfit("")
+        way = [source, *(t.source for t in reversed(program.path(source)))]
+        for checkpoint in way:
+            for goal in program.checkpoints[checkpoint].goals:
+                for arg in reversed(goal.args if isinstance(goal, Literal) else ()):
+                    if language.world.entities[arg].type in predicate.parameters[0].types:
+                        return (Literal(word, (arg,)),)
+        raise Misfit("")
+
+    def goals(
+        self, tokens: Sequence[str], span: object, dialogue: Dialogue
+    ) -> tuple[tuple[Goal, ...], tuple[Literal, ...]]:
+        """The goals of a step in a span of tokens, and its condition.
+
+        Raises:
+            Misfit: it is no step, or several.
+            Unclear: a question has to be asked.
+        """
+        assert isinstance(span, tuple)
+        steps = self.steps(list(tokens[span[0] : span[1]]), dialogue)
+        if not steps or not steps[0].goals or not all(_plain(s) for s in steps[1:]):
+            raise Misfit("")
+        return tuple(g for s in steps for g in s.goals), steps[0].when
+
+    def steps(self, tokens: Sequence[str], dialogue: Dialogue) -> list[Step]:
+        """The steps that some tokens ask for, none where they ask for none.
+
+        Raises:
+            Unclear: a question has to be asked.
+        """
         question: Unclear | None = None
-        for cut in self._language.cuts(part):
-            if cut.unknown:
+        for cut in self._language.cuts(tokens):
+            if cut.unknown or not any(i.role in ("goal", "again") for i in cut.items):
                 continue
             try:
                 steps, _ = steps_of(cut, self._language.resolver, dialogue.scope)
@@ -288,11 +274,81 @@ class Changes:
             except Unclear as unclear:
                 question = question or unclear
                 continue
-            if steps and all(_plain(s) for s in steps[1:]) and steps[0].goals:
-                return tuple(g for s in steps for g in s.goals), steps[0].when
+            if steps:
+                return steps
         if question is not None:
             raise question
-        raise Misfit("")
+        return []
+
+
+_NOT_START = {
+    "remove": "The start can't be removed; it is where every program begins. Name another step.",
+    "rename": "The start can't be renamed; it is where every program begins. Name another step.",
+    "move": "The start can't be moved; it is where every program begins. Name another step.",
+    "move-before": "The start can't be moved; it is where every program begins. Name another step.",
+    "split": "The start has no goals; name another step.",
+    "replace": "The start has no goals; say what comes after it.",
+    "also": "The start has no goals; say what comes after it.",
+    "remove-rest": 'The start can\'t be removed; say "start over" for an empty program.',
+    "merge": "The start has no goals; name another step.",
+    "swap": "Nothing can come before the start; name another step.",
+    "else": "The start can't be a branch; name another step.",
+    "condition": "The start waits for nothing; name another step.",
+    "unconditional": "The start waits for nothing; name another step.",
+}
+_ALONE: Mapping[str, Callable[[Automaton, str], Reshaped]] = {
+    "cut-after": cut_after,
+    "remove-rest": removed_with_rest,
+    "else": otherwise,
+    "unconditional": unconditional,
+}
+_TOGETHER: Mapping[str, Callable[[Automaton, str, str], Reshaped]] = {
+    "move": moved_behind,
+    "move-before": moved_before,
+    "merge": merged,
+    "swap": swapped,
+}
+
+
+def _renamed(match: Match, program: Automaton, this: str) -> Reshaped:
+    span = match.slots["n"]
+    assert isinstance(span, tuple)
+    wanted = " ".join(match.tokens[span[0] : span[1]])
+    name = program.checkpoints[this].name
+    return [RenameCheckpoint(this, wanted)], f"{name} is called {wanted} now", [this]
+
+
+def _pair(
+    intent: str, named: Mapping[str, str], latest: str, program: Automaton
+) -> tuple[str, str]:
+    """The two checkpoints of an edit; one that isn't named is the latest, or what is beside it.
+
+    Raises:
+        EditError: there are not two.
+    """
+    this = named.get("k", latest)
+    if "l" in named:
+        return this, named["l"]
+    if intent == "move":
+        leaves = [c for c in program.leaves() if c != this]
+        other = leaves[-1] if leaves else None
+    elif intent == "move-before":
+        first = program.children(START)
+        other = first[0] if first else None
+        if other == this:
+            raise EditError(f"{program.checkpoints[this].name} is the first step already.")
+    else:
+        other = program.parent(this)
+    if other is None or START in (this, other):
+        raise EditError("There are not two steps for that; name them.")
+    return this, other
+
+
+def _latest(program: Automaton, dialogue: Dialogue) -> str:
+    """The checkpoint that was changed last."""
+    touched = [c for c in dialogue.touched if c in program.checkpoints]
+    here = dialogue.here if dialogue.here in program.checkpoints else None
+    return touched[-1] if touched else here or list(program.checkpoints)[-1]
 
 
 def _going_on(
@@ -307,40 +363,3 @@ def _going_on(
 
 def _plain(step: Step) -> bool:
     return not step.when and step.role == "then"
-
-
-def _used(program: Automaton, touched: Sequence[str]) -> list[str]:
-    """The entities in some checkpoints' goals, the latest checkpoint's first, each once."""
-    found: dict[str, None] = {}
-    for checkpoint in reversed(touched):
-        for goal in program.checkpoints[checkpoint].goals:
-            for arg in _args(goal):
-                found[arg] = None
-        incoming = program.incoming(checkpoint)
-        for literal in incoming.when if incoming else ():
-            for arg in literal.args:
-                found.setdefault(arg)
-    return list(found)
-
-
-def _args(goal: Formula) -> Iterator[str]:
-    from polaris_nl.model.formula import literals_in
-
-    for literal in literals_in(goal):
-        yield from literal.args
-
-
-def _swapped(program: Automaton, touched: Sequence[str], old: str, new: str) -> Iterator[Edit]:
-    """The edits that put one entity in another's place."""
-    for checkpoint in touched:
-        if checkpoint == START:
-            continue
-        goals = program.checkpoints[checkpoint].goals
-        changed = tuple(bind(g, {old: new}) for g in goals)
-        if changed != goals:
-            yield SetGoals(checkpoint, changed)
-        incoming = program.incoming(checkpoint)
-        if incoming is not None:
-            when = tuple(x.bind({old: new}) for x in incoming.when)
-            if when != incoming.when:
-                yield SetConditional(incoming.id, when)

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal as OneOf
 
 from polaris_nl.language.grammar import Grammar
-from polaris_nl.language.mention import Mention
+from polaris_nl.language.mention import ASKED, EVERYTHING, SPEAKER, Mention
 from polaris_nl.language.template import Parts, Slot, first_words, match
+from polaris_nl.language.verbs import INFLECTED, Inflection, Verbs
 from polaris_nl.model.world import World
 
-Kind = OneOf["goal", "state", "wish", "ellipsis"]
+Kind = OneOf["goal", "state", "small", "wish", "told", "ellipsis"]
 
 _KINDS: Mapping[str, tuple[Kind, bool, float]] = {
     "goals": ("goal", True, 1.0),
@@ -21,6 +22,13 @@ _KINDS: Mapping[str, tuple[Kind, bool, float]] = {
     "not-states": ("state", False, 1.0),
     "wished-states": ("wish", True, 1.0),
     "wished-not-states": ("wish", False, 1.0),
+    "denied-states": ("state", False, 1.0),
+    "denied-not-states": ("state", True, 1.1),
+    "wished-denied-states": ("wish", False, 1.0),
+    "wished-denied-not-states": ("wish", True, 1.1),
+    "small-states": ("small", True, 1.1),
+    "small-not-states": ("small", False, 1.1),
+    "told": ("told", True, 1.0),
     "ellipsis": ("ellipsis", True, 1.8),
 }
 """For each list of a grammar file: what its wordings are, their sign, and what taking one costs."""
@@ -31,10 +39,12 @@ class Clause:
     """One predicate, said of mentions.
 
     Attributes:
-        kind: an imperative, a state, a state that is wished for, or a rest that leans on the clause
-            before.
+        kind: an imperative, a state, a state without its verb ("the cup on the desk"), a state that
+            is wished for, one that is only told of, or a rest that leans on the clause before.
         bindings: the parameter's name (without `?`) and what was said for it.
         cost: how much speaks against it.
+        form: how the verb of an imperative stands: "fill it", "filling it", "(you have) filled it".
+        tellable: whether people tell of such states in passing; what they answer is never said so.
     """
 
     start: int
@@ -44,6 +54,8 @@ class Clause:
     positive: bool
     bindings: tuple[tuple[str, Mention], ...]
     cost: float
+    form: Inflection = "base"
+    tellable: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +68,15 @@ class _Form:
     types: Mapping[str, tuple[str, ...]]
 
 
+Fitting = dict[tuple[int, tuple[str, ...]], Sequence[tuple[int, object]]]
+_WORDLESS: Mapping[tuple[str, ...], Mention] = {
+    (EVERYTHING,): Mention(0, 0, EVERYTHING, quantifier="all"),
+    (SPEAKER,): Mention(0, 0, SPEAKER, pronoun="me"),
+    (ASKED,): Mention(0, 0, ASKED),
+}
+"""What slots that take no words stand for."""
+
+
 class ClauseFinder:
     """Finds the clauses of one world's domain."""
 
@@ -63,6 +84,7 @@ class ClauseFinder:
         self._world = world
         self._by_word: dict[str, list[_Form]] = {}
         self._anywhere: list[_Form] = []
+        self.verbs = verbs_of(grammar)
         for form in self._forms(grammar):
             words = first_words(form.template)
             if words is None:
@@ -82,25 +104,62 @@ class ClauseFinder:
                     yield _Form(name, kind, positive, cost, template, types)
 
     def at(
-        self, tokens: Sequence[str], start: int, mentions: Sequence[Sequence[Mention]]
+        self,
+        tokens: Sequence[str],
+        start: int,
+        mentions: Sequence[Sequence[Mention]],
+        known: Fitting | None = None,
     ) -> Iterator[Clause]:
-        """The clauses that start at a position."""
+        """The clauses that start at a position.
+
+        Args:
+            tokens: the utterance.
+            start: the position.
+            mentions: those that start at each position.
+            known: what fits where, kept from one position of an utterance to the next.
+        """
+        known = {} if known is None else known
         forms = [
             *self._by_word.get(tokens[start], ()),
             *(self._anywhere if mentions[start] else ()),
         ]
+        yield from self._matched(forms, tokens, start, mentions, "base", known)
+        for inflection in INFLECTED:
+            for verb in self.verbs.bases(tokens[start], inflection):
+                imperative = [*tokens[:start], verb, *tokens[start + 1 :]]
+                goals = [f for f in self._by_word.get(verb, ()) if f.kind == "goal"]
+                yield from self._matched(goals, imperative, start, mentions, inflection, known)
+
+    def _matched(
+        self,
+        forms: Sequence[_Form],
+        tokens: Sequence[str],
+        start: int,
+        mentions: Sequence[Sequence[Mention]],
+        inflection: Inflection,
+        known: Fitting,
+    ) -> Iterator[Clause]:
         for form in forms:
 
-            def fillers(slot: Slot, at: int, form: _Form = form) -> Iterator[tuple[int, object]]:
+            def fillers(slot: Slot, at: int, form: _Form = form) -> Sequence[tuple[int, object]]:
                 types = (slot.type,) if slot.type else form.types.get(slot.name, ())
-                if at < len(mentions):
-                    for mention in mentions[at]:
-                        if self.fits(mention, types):
-                            yield mention.end, mention
+                key = (at, types)
+                if key not in known:
+                    known[key] = self._fitting(types, at, mentions)
+                return known[key]
 
             for end, bound in match(form.template, tokens, start, fillers):
                 if end > start:
-                    yield self._clause(form, start, end, bound)
+                    yield self._clause(form, start, end, bound, inflection)
+
+    def _fitting(
+        self, types: tuple[str, ...], at: int, mentions: Sequence[Sequence[Mention]]
+    ) -> Sequence[tuple[int, object]]:
+        """What can stand at a position in a slot of some types, with its end."""
+        if types in _WORDLESS:
+            return ((at, replace(_WORDLESS[types], start=at, end=at)),)
+        there = mentions[at] if at < len(mentions) else ()
+        return tuple((m.end, m) for m in there if self.fits(m, types))
 
     def misfits(
         self, tokens: Sequence[str], start: int, mentions: Sequence[Sequence[Mention]]
@@ -129,18 +188,34 @@ class ClauseFinder:
                     yield end, *wrong[0]
 
     def _clause(
-        self, form: _Form, start: int, end: int, bound: tuple[tuple[str, object], ...]
+        self,
+        form: _Form,
+        start: int,
+        end: int,
+        bound: tuple[tuple[str, object], ...],
+        inflection: Inflection,
     ) -> Clause:
         bindings = tuple((name, m) for name, m in bound if isinstance(m, Mention))
         cost = form.cost + sum(_mention_cost(m, form.types.get(n, ()), self) for n, m in bindings)
-        return Clause(start, end, form.kind, form.predicate, form.positive, bindings, cost)
+        return Clause(
+            start,
+            end,
+            form.kind,
+            form.predicate,
+            form.positive,
+            bindings,
+            cost,
+            inflection,
+            "message" not in {kind for types in form.types.values() for kind in types},
+        )
 
     def fits(self, mention: Mention, types: Sequence[str]) -> bool:
         """Whether a mention can mean entities of some types."""
         if mention.parts:
             return all(self.fits(part, types) for part in mention.parts)
         if mention.pronoun:
-            return not types or bool(set(pronoun_types(mention.pronoun)) & set(types))
+            known = set(pronoun_types(mention.pronoun))
+            return not types or any(t in known or self._other_thing(mention, t) for t in types)
         domain = self._world.domain
         entities = self._world.entities
         return (
@@ -150,6 +225,10 @@ class ClauseFinder:
             )
             or self._place_of_surfaces(mention, types)
         )
+
+    def _other_thing(self, mention: Mention, kind: str) -> bool:
+        """Whether "it" can be of a type that only this domain has."""
+        return mention.pronoun in _THINGS and kind not in _HOUSEHOLD
 
     def stands_there(self, mention: Mention) -> bool:
         """Whether one of the things that a mention can mean is where it says, at the start."""
@@ -167,6 +246,18 @@ class ClauseFinder:
         )
 
 
+def verbs_of(grammar: Grammar) -> Verbs:
+    """The forms of the verbs that a grammar's imperatives start with."""
+    bases = {
+        word
+        for phrases in grammar.predicates.values()
+        for key in ("goals", "not-goals", "asks")
+        for template in phrases.wordings.get(key, ())
+        for word in first_words(template) or ()
+    }
+    return Verbs(bases, grammar.common.irregular)
+
+
 _PRONOUN_TYPES: Mapping[str, tuple[str, ...]] = {
     "it": ("object", "container", "message"),
     "that": ("object", "container", "message"),
@@ -181,11 +272,16 @@ _PRONOUN_TYPES: Mapping[str, tuple[str, ...]] = {
 }
 
 
+_HOUSEHOLD = ("object", "container", "surface", "region", "person", "message")
+_THINGS = ("it", "that", "this", "one", "them", "they", "these", "those", "both")
+
+
 def pronoun_types(pronoun: str) -> tuple[str, ...]:
     """The types of what a pronoun can stand for."""
     return _PRONOUN_TYPES.get(pronoun, ("object", "container", "person"))
 
 
+_BESIDE = 0.5
 _IDLE_PLACE = 2.5
 """What a place in a list costs where nothing stands: in "the bowl in the cupboard and the cup in the
 drawer" it is where the bowl is to be put."""
@@ -193,6 +289,7 @@ drawer" it is where the bowl is to be put."""
 
 def _mention_cost(mention: Mention, types: Sequence[str], finder: ClauseFinder) -> float:
     cost = 0.15 if mention.place is not None else 0.0
+    cost += _BESIDE if mention.beside else 0.0
     if mention.parts:
         placed = sum(_IDLE_PLACE for p in mention.parts if p.place and not finder.stands_there(p))
         return cost + 0.02 * len(mention.parts) + placed

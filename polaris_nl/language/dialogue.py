@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Literal as OneOf
 
 from polaris_nl.automaton.automaton import Automaton
 from polaris_nl.language.resolve import Scope
@@ -16,9 +18,10 @@ class Pending:
     Attributes:
         utterance: what was said, to be read again with the answer.
         phrase: the words that were unclear, or the parameter that was missing, as `?s`.
-        options: the answers offered, as spoken, with the entity each means.
+        options: the answers offered, as spoken, with the entity or checkpoint each means.
         types: what an answer may be where nothing was offered; empty for anything.
         number: how many are wanted, or 0 for any number.
+        kind: what is asked for: a thing, a step of the program, or what to do then.
     """
 
     utterance: str
@@ -26,6 +29,28 @@ class Pending:
     options: tuple[tuple[str, str], ...] = ()
     types: tuple[str, ...] = ()
     number: int = 0
+    kind: OneOf["thing", "step", "then"] = "thing"
+
+
+@dataclass(frozen=True, slots=True)
+class Latest:
+    """The latest change, for corrections that read it again.
+
+    Attributes:
+        tokens: what was said.
+        before: the program that it changed.
+        after: the program that it made.
+        dialogue: the dialogue before it.
+        intent: the edit that it was, or "" where it said steps.
+        spans: where the tokens name checkpoints, by slot.
+    """
+
+    tokens: tuple[str, ...]
+    before: Automaton
+    after: Automaton
+    dialogue: Dialogue
+    intent: str = ""
+    spans: Mapping[str, tuple[int, int]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +63,9 @@ class Dialogue:
         anchor: where the latest branch began, for "otherwise".
         scope: what was talked about.
         pending: the open question, or None.
+        latest: the latest change, or None.
+        asked: the checkpoint that the latest utterance asked about, or None.
+        missed: the latest utterance was refused, so that "I meant ..." says it anew.
     """
 
     here: str | None = None
@@ -45,6 +73,12 @@ class Dialogue:
     anchor: str | None = None
     scope: Scope = Scope()
     pending: Pending | None = None
+    latest: Latest | None = None
+    asked: str | None = None
+    missed: bool = False
+
+
+ALERTED = "alerted-to"
 
 
 def recalled(program: Automaton) -> Dialogue:
@@ -57,4 +91,6 @@ def recalled(program: Automaton) -> Dialogue:
         for place in places:
             scope = scope.after((place,))
         scope = scope.after(tuple(thing for thing in things if not thing.startswith("?")))
+        told = tuple((x.args[0], x.args[1]) for x in literals if x.predicate == ALERTED)
+        scope = replace(scope, told=(*scope.told, *told))
     return Dialogue(scope=scope)

@@ -1,80 +1,24 @@
-"""Grammar files: how a domain is talked about, as data (`grammars/<language>/*.yaml`)."""
+"""Grammars: how a domain is talked about, as data (`grammars/<language>/*.yaml`)."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
-from polaris_nl.language.template import Parts, parse_template
-from polaris_nl.language.tokens import phrase
+from polaris_nl.language.common import SCHEMA, Common, read_common
+from polaris_nl.language.grammar_file import GrammarFile
+from polaris_nl.language.plain_phrases import hint_line, plain_action, plain_entry
+from polaris_nl.language.predicate_phrases import Phrases, check_text, read_phrases
 from polaris_nl.model.data import data_folder
-from polaris_nl.model.domain import Domain, Predicate
-from polaris_nl.model.errors import FormatError, GrammarError, did_you_mean
-from polaris_nl.model.schema import check_schema
-from polaris_nl.model.yaml_lines import Lined, read_yaml
+from polaris_nl.model.domain import Domain, Operator
+from polaris_nl.model.errors import GrammarError, did_you_mean
+from polaris_nl.model.yaml_lines import Lined
 
-SCHEMA = "polaris-grammar/1"
-_PREDICATE_WORDINGS = ("goals", "not-goals", "states", "not-states", "asks", "ellipsis")
-_PREDICATE_TEXTS = (
-    "fact",
-    "not-fact",
-    "goal",
-    "not-goal",
-    "event",
-    "not-event",
-    "name",
-    "not-name",
-)
-_PREDICATE_LISTS = ("adjectives", "not-adjectives")
-_DOMAIN_FIELDS = ("schema", "uses", "lists", "predicates", "operators", "names")
-
-
-@dataclass(frozen=True, slots=True)
-class Phrases:
-    """How one predicate is talked about.
-
-    Attributes:
-        wordings: by kind (goals, states, ...): what is understood.
-        texts: by kind (fact, goal, event, name, ...): what is said.
-        adjectives: words before a noun that mean the predicate; not_adjectives: its negation.
-    """
-
-    predicate: str
-    wordings: Mapping[str, tuple[Parts, ...]] = field(default_factory=dict)
-    texts: Mapping[str, str] = field(default_factory=dict)
-    adjectives: tuple[str, ...] = ()
-    not_adjectives: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True)
-class Common:
-    """What every domain shares: see `grammars/en/common.yaml`, of which this is the content."""
-
-    lists: Mapping[str, str]
-    values: Mapping[str, object]
-    language: str = "en"
-
-    def words(self, *path: str) -> list[tuple[str, ...]]:
-        """A list of phrases as words, the longest first."""
-        value: object = self.values
-        for key in path:
-            value = value.get(key, ()) if isinstance(value, Mapping) else ()
-        texts = value if isinstance(value, list) else []
-        return sorted({phrase(str(t)) for t in texts}, key=lambda p: (-len(p), p))
-
-    def templates(self, *path: str) -> tuple[Parts, ...]:
-        """A list of wordings."""
-        value: object = self.values
-        for key in path:
-            value = value.get(key, ()) if isinstance(value, Mapping) else ()
-        texts = value if isinstance(value, list) else []
-        return tuple(parse_template(str(t), self.lists) for t in texts)
-
-    def mapping(self, key: str) -> Mapping[str, object]:
-        """A mapping of the file."""
-        value = self.values.get(key)
-        return value if isinstance(value, Mapping) else {}
+BESIDE = "grammar.yaml"
+"""The grammar file in the folder of a domain, which comes before a shipped one."""
+_FIELDS = ("schema", "uses", "lists", "predicates", "operators", "names")
 
 
 @dataclass(frozen=True)
@@ -94,150 +38,190 @@ class Grammar:
 
 
 def load_grammar(domain: Domain, language: str = "en") -> Grammar:
-    """The grammar of a domain; a domain without a grammar file is talked about by its predicates' names.
+    """The grammar of a domain; one without a grammar file is talked about by its predicates' names.
 
     Raises:
         FileError: the shared grammar can't be read.
         GrammarError: a grammar file is not as it should be; file and line are named.
     """
-    folder = data_folder("grammars") / language
-    common = read_common(folder / "common.yaml")
-    beside = domain.path.with_name("grammar.yaml") if domain.path else None
-    path = folder / f"{domain.name}.yaml"
+    common = _shipped_common(language)
+    path = grammar_path(domain, language)
+    if path is None:
+        return plain_grammar(domain, common)
+    return read_grammar(path, domain, common)
+
+
+@cache
+def _shipped_common(language: str) -> Common:
+    """What is shared, read once: it ships with the program and doesn't change under it."""
+    return read_common(grammar_folder(language) / "common.yaml")
+
+
+def grammar_folder(language: str = "en") -> Path:
+    """Where the shipped grammars of a language are."""
+    return data_folder("grammars") / language
+
+
+def grammar_path(domain: Domain, language: str = "en") -> Path | None:
+    """The grammar file of a domain: beside it, or shipped under its name; None where it has none."""
+    beside = domain.path.with_name(BESIDE) if domain.path else None
     if beside is not None and beside.is_file():
-        path = beside
-    if not path.is_file():
-        return Grammar(common, {p.name: _plain(p, common) for p in domain.predicates.values()}, {})
-    return read_grammar(path, domain, common, folder)
+        return beside
+    shipped = grammar_folder(language) / f"{domain.name}.yaml"
+    return shipped if shipped.is_file() else None
 
 
-def read_grammar(path: Path, domain: Domain, common: Common, folder: Path) -> Grammar:
+def read_grammar(
+    path: Path, domain: Domain, common: Common, faults: list[GrammarError] | None = None
+) -> Grammar:
     """Reads one domain's grammar file and the files it uses.
 
+    Args:
+        path: the file.
+        domain: the domain that it is about.
+        common: what is shared.
+        faults: takes what is wrong; without it the first fault is raised.
+
     Raises:
+        FileError: it can't be read.
         GrammarError: it is not as it should be; file and line are named.
     """
-    try:
-        root, _ = read_yaml(path)
-        fields = root.mapping("A grammar", _DOMAIN_FIELDS)
-        check_schema(
-            fields["schema"].text("schema") if "schema" in fields else "", SCHEMA, "grammar"
-        )
-        predicates: dict[str, Phrases] = {
-            p.name: _plain(p, common) for p in domain.predicates.values()
+    reader = _Reader((domain,), common, faults)
+    reader.read(path)
+    plain = plain_grammar(domain, common)
+    return Grammar(
+        common,
+        {**plain.predicates, **reader.predicates},
+        {**plain.operators, **reader.operators},
+        tuple(reader.names),
+    )
+
+
+def plain_grammar(domain: Domain, common: Common) -> Grammar:
+    """The grammar of a domain that no file speaks of: from its names and `; NL:` comments."""
+    file = GrammarFile(domain.path or Path(domain.name), irregular=common.irregular)
+    predicates: dict[str, Phrases] = {}
+    for predicate in domain.predicates.values():
+        line = hint_line(domain, predicate.hint)
+        fields = {
+            key: Lined(said if isinstance(said, str) else [Lined(s, line) for s in said], line)
+            for key, said in plain_entry(predicate).items()
         }
-        operators: dict[str, str] = {}
-        for used in fields["uses"].texts("uses") if "uses" in fields else ():
-            shared = read_grammar(folder / f"{used}.yaml", domain, common, folder)
-            predicates.update({k: v for k, v in shared.predicates.items() if v.texts})
-            operators.update(shared.operators)
-        lists = {**common.lists, **_texts(fields.get("lists"))}
-        own = fields.get("predicates", Lined({}, 1))
-        for name, value in own.mapping("predicates", _keys(own)).items():
-            if name in domain.predicates:
-                predicates[name] = _phrases(name, value, lists)
-            elif "uses" in fields:
-                hint = did_you_mean(name, domain.predicates)
-                raise FormatError(
-                    f"The domain {domain.name} has no predicate {name}.{hint}", line=value.line
+        predicates[predicate.name] = read_phrases(
+            file, predicate, Lined(fields, line), common.lists, domain.types
+        )
+    operators = {o.name: plain_action(o) for o in domain.operators.values()}
+    return Grammar(common, predicates, operators)
+
+
+def read_shared(
+    path: Path, domains: Sequence[Domain], common: Common, faults: list[GrammarError] | None = None
+) -> Grammar:
+    """Reads a grammar file that those of several domains use.
+
+    Raises:
+        FileError: it can't be read.
+        GrammarError: it is not as it should be, or speaks of what none of the domains has.
+    """
+    reader = _Reader(domains, common, faults)
+    reader.read(path)
+    return Grammar(common, reader.predicates, reader.operators, tuple(reader.names))
+
+
+class _Reader:
+    """Reads the files of a grammar, the used ones first, so that a domain's own words win."""
+
+    def __init__(
+        self, domains: Sequence[Domain], common: Common, faults: list[GrammarError] | None
+    ) -> None:
+        self._domains = domains
+        self._common = common
+        self._faults = faults
+        self.predicates: dict[str, Phrases] = {}
+        self.operators: dict[str, str] = {}
+        self.names: list[tuple[str, str]] = []
+
+    def read(self, path: Path, shared: bool = False) -> None:
+        """Reads a file; a shared one may speak of what a domain doesn't have."""
+        file = GrammarFile(path, self._faults, self._common.irregular)
+        fields = file.root(SCHEMA, "A grammar", _FIELDS)
+        for used, line in file.items(fields.get("uses"), "uses"):
+            self._read_used(file, used, line, shared)
+        lists = file.lists(fields.get("lists"), self._common.lists)
+        entries = file.fields(fields.get("predicates"), "predicates")
+        for name, value in entries.items():
+            self._read_predicate(file, name, value, lists, shared)
+        for name, value in file.fields(fields.get("operators"), "operators").items():
+            self._read_operator(file, name, value, shared)
+        names = [] if shared else list(self._names(file, fields.get("names")))
+        self.names = names or self.names
+
+    def _read_used(self, file: GrammarFile, used: str, line: int, shared: bool) -> None:
+        folder = grammar_folder(self._common.language)
+        path = next(
+            (
+                p
+                for p in (file.path.with_name(f"{used}.yaml"), folder / f"{used}.yaml")
+                if p.is_file()
+            ),
+            None,
+        )
+        if shared:
+            file.fault("A grammar that others use can't use one itself; take uses out.", line)
+        elif path is None:
+            known = {p.stem for p in folder.glob("*.yaml")} - {"common"}
+            file.fault(f"There is no grammar {used} to use.{did_you_mean(used, known)}", line)
+        else:
+            self.read(path, shared=True)
+
+    def _read_predicate(
+        self, file: GrammarFile, name: str, value: Lined, lists: Mapping[str, str], shared: bool
+    ) -> None:
+        domain = next((d for d in self._domains if name in d.predicates), None)
+        if domain is not None:
+            predicate = domain.predicates[name]
+            self.predicates[name] = read_phrases(file, predicate, value, lists, domain.types)
+        elif not shared:
+            known = {p for d in self._domains for p in d.predicates}
+            file.fault(
+                f"{self._whose} has no predicate {name}.{did_you_mean(name, known)}", value.line
+            )
+
+    def _read_operator(self, file: GrammarFile, name: str, value: Lined, shared: bool) -> None:
+        operator = next((d.operators[name] for d in self._domains if name in d.operators), None)
+        with file.kept():
+            if operator is not None:
+                self.operators[name] = _operator_text(file, operator, value)
+            elif not shared:
+                known = {o for d in self._domains for o in d.operators}
+                file.fault(
+                    f"{self._whose} has no operator {name}.{did_you_mean(name, known)}", value.line
                 )
-        operators.update(
-            {k: v for k, v in _texts(fields.get("operators")).items() if k in domain.operators}
-        )
-        return Grammar(common, predicates, operators, _names(fields.get("names")))
-    except FormatError as error:
-        if error.path is not None:
-            raise
-        raise GrammarError(error.reason, path, error.line) from error
 
-
-def read_common(path: Path) -> Common:
-    """Reads the grammar file that all domains share.
-
-    Raises:
-        GrammarError: it is not as it should be; file and line are named.
-    """
-    try:
-        root, _ = read_yaml(path)
-        values = {
-            key: _unlined(value) for key, value in root.mapping("A grammar", _keys(root)).items()
-        }
-        check_schema(str(values.get("schema", "")), SCHEMA, "grammar")
-        return Common(_texts(root.value.get("lists")), values, path.parent.name)
-    except FormatError as error:
-        raise GrammarError(error.reason, path, error.line) from error
-
-
-def _phrases(name: str, value: Lined, lists: Mapping[str, str]) -> Phrases:
-    fields = value.mapping(
-        f"The predicate {name}", (*_PREDICATE_WORDINGS, *_PREDICATE_TEXTS, *_PREDICATE_LISTS)
-    )
-    wordings: dict[str, tuple[Parts, ...]] = {}
-    for key in _PREDICATE_WORDINGS:
-        found: list[Parts] = []
-        for item in fields[key].items(key) if key in fields else ():
-            try:
-                found.append(parse_template(item.text("a wording"), lists))
-                if key in ("states", "not-states"):
-                    # A state that should be brought about: "the tray should be on the table".
-                    wished = item.text("a wording").replace("<be>", "<shall-be>")
-                    wordings[f"wished-{key}"] = (
-                        *wordings.get(f"wished-{key}", ()),
-                        parse_template(wished, lists),
+    def _names(self, file: GrammarFile, value: Lined | None) -> Iterator[tuple[str, str]]:
+        with file.kept():
+            for item in value.items("names") if value is not None else ():
+                fields = file.fields(item, "A name", ("when", "name"))
+                if len(fields) < 2:
+                    file.fault(
+                        "A name is {when: a predicate, name: a checkpoint's name}.", item.line
                     )
-            except GrammarError as error:
-                raise FormatError(error.reason, line=item.line) from error
-        wordings[key] = tuple(found)
-    return Phrases(
-        name,
-        wordings,
-        {key: fields[key].text(key) for key in _PREDICATE_TEXTS if key in fields},
-        fields["adjectives"].texts("adjectives") if "adjectives" in fields else (),
-        fields["not-adjectives"].texts("not-adjectives") if "not-adjectives" in fields else (),
-    )
+                    continue
+                when = fields["when"].text("when")
+                known = {p for d in self._domains for p in d.predicates}
+                if when not in known:
+                    hint = did_you_mean(when, known)
+                    file.fault(f"{self._whose} has no predicate {when}.{hint}", fields["when"].line)
+                yield when, fields["name"].text("name")
+
+    @property
+    def _whose(self) -> str:
+        if len(self._domains) == 1:
+            return f"The domain {self._domains[0].name}"
+        return "Every domain that is known here"
 
 
-def _plain(predicate: Predicate, common: Common) -> Phrases:
-    """Phrases made of a predicate's name or of its author's `; NL:` comment."""
-    slots = [p.name.lstrip("?") for p in predicate.parameters]
-    hint = predicate.hint or " ".join(
-        [f"[{0}]"] * bool(slots)
-        + [predicate.name.replace("-", " ").replace("_", " ")]
-        + [f"[{i}]" for i in range(1, len(slots))]
-    )
-    text = hint
-    for index, slot in enumerate(slots):
-        text = text.replace(f"[{index}]", f"{{{slot}}}")
-    template = parse_template(text, common.lists)
-    wished = parse_template(f"(have|make|get|make sure [that]) {text}", common.lists)
-    return Phrases(
-        predicate.name,
-        {"states": (template,), "goals": (wished,), "wished-states": (template,)},
-        {},
-    )
-
-
-def _texts(value: Lined | None) -> dict[str, str]:
-    if value is None:
-        return {}
-    return {key: item.text(key) for key, item in value.mapping("this", _keys(value)).items()}
-
-
-def _names(value: Lined | None) -> tuple[tuple[str, str], ...]:
-    found = []
-    for item in value.items("names") if value is not None else ():
-        fields = item.mapping("A name", ("when", "name"))
-        found.append((fields["when"].text("when"), fields["name"].text("name")))
-    return tuple(found)
-
-
-def _keys(value: Lined) -> tuple[str, ...]:
-    return tuple(value.value) if isinstance(value.value, dict) else ()
-
-
-def _unlined(value: Lined) -> object:
-    if isinstance(value.value, dict):
-        return {key: _unlined(item) for key, item in value.value.items()}
-    if isinstance(value.value, list):
-        return [_unlined(item) for item in value.value]
-    return value.value
+def _operator_text(file: GrammarFile, operator: Operator, value: Lined) -> str:
+    text = value.text(operator.name)
+    check_text(file, text, value.line, f"operator {operator.name}", operator.parameters)
+    return text

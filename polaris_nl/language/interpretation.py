@@ -14,6 +14,15 @@ Command = OneOf[
     "status", "repeat", "quit", "save", "load",
 ]  # fmt: skip
 
+QueryKind = OneOf[
+    "plan", "program", "checkpoint", "where", "is-it", "why", "help", "problems", "world", "status",
+    "where-robot", "people", "contents", "inside", "any-inside", "list", "which", "any",
+    "meaning", "owner", "first", "last", "next", "after-step", "before-step",
+    "length", "use", "when", "will", "able", "why-not",
+]  # fmt: skip
+"""What a question asks for, mostly the name of its intent; `which` asks for those things of which a
+fact holds, `any` whether there is one."""
+
 
 @dataclass(frozen=True, slots=True)
 class Question:
@@ -46,30 +55,29 @@ class Query:
     """A question by the user that only the session can answer: it needs the plan or the state.
 
     Attributes:
-        kind: what is asked: the plan (of a branch), the program, a checkpoint, where an entity is,
-            why an action is there, what can be said.
+        kind: what is asked.
         checkpoint: the checkpoint that it is about, or None.
         when: the conditional that it is about ("what will you do if she dismisses it").
         entity: the entity that it is about, or "".
         literal: the fact that it is about ("is the cupboard open"), or None.
+        entities: the entities that it is about, where they are several.
+        literals: the facts that it is about, where they are several: one for each thing that "which
+            dishes are dirty" may mean.
+        goals: the goals that it is about ("why do you go to the kitchen").
+        counted: how many is asked, too.
+        noun: what is asked for ("dishes"), or "".
     """
 
-    kind: OneOf[
-        "plan",
-        "program",
-        "checkpoint",
-        "where",
-        "is-it",
-        "why",
-        "help",
-        "problems",
-        "world",
-        "status",
-    ]
+    kind: QueryKind
     checkpoint: str | None = None
     when: tuple[Literal, ...] = ()
     entity: str = ""
     literal: Literal | None = None
+    entities: tuple[str, ...] = ()
+    literals: tuple[Literal, ...] = ()
+    goals: tuple[Literal, ...] = ()
+    counted: bool = False
+    noun: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,6 +105,7 @@ class Interpretation:
             kept).
         say: what to answer, one sentence or two; for a query the session says the answer.
         partial: the clear part of the utterance is applied although a question is open.
+        agrees: a command that says yes, too: "yes, run it".
         readings: all readings, the winner first.
     """
 
@@ -109,4 +118,5 @@ class Interpretation:
     refusal: Refusal | None = None
     query: Query | None = None
     partial: bool = False
+    agrees: bool = False
     readings: tuple[Reading, ...] = field(default=(), repr=False)

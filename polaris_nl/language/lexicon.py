@@ -19,8 +19,17 @@ _IRREGULAR = {
 }
 _TYPE_NOUNS = {
     "region": ("room", "place", "area"),
-    "person": ("person",),
-    "object": ("object", "thing", "item", "everything"),
+    "person": (
+        "person",
+        "somebody",
+        "someone",
+        "anybody",
+        "anyone",
+        "everybody",
+        "everyone",
+        "nobody",
+    ),
+    "object": ("object", "thing", "item", "everything", "anything", "something", "nothing"),
     "container": ("container",),
     "surface": ("surface",),
     "message": ("message",),

@@ -5,7 +5,20 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal as OneOf
 
-Quantifier = OneOf["", "all", "both", "some"]
+Quantifier = OneOf["", "all", "both", "some", "rest", "none"]
+
+
+EVERYTHING = "everything"
+"""The type of a slot that takes no words and stands for all that is in the place named beside it."""
+
+SPEAKER = "speaker"
+"""The type of a slot that takes no words and stands for the one who speaks: "bring it here"."""
+
+ASKED = "asked"
+"""The type of a slot that takes no words and is asked for: "bring the cup" lacks where to."""
+
+WORDLESS = (EVERYTHING, SPEAKER, ASKED)
+"""The types of slots that take no words."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +42,8 @@ class Mention:
         text: the words.
         candidates: what may be meant, all types; empty for a pronoun.
         pronoun: the pronoun, or "".
-        quantifier: `all` for every one of a kind, `both` for each of several, `some` for a number of them.
+        quantifier: `all` for every one of a kind, `both` for each of several, `some` for a number of
+            them, `rest` for those of which nothing was said yet, `none` for none of them.
         number: how many, where said, or 0.
         plural: the noun stands in the plural.
         kind: the kind or noun that a quantifier runs over, or "".
@@ -39,6 +53,8 @@ class Mention:
         parts: the mentions of a list ("the cup and the plate").
         alternative: the list is joined by "or".
         place: where it is said to be: "the cup on the counter", "from the sink".
+        beside: it is described by what is near it.
+        excepted: what is left out: "all the cups but the red one".
     """
 
     start: int
@@ -56,3 +72,5 @@ class Mention:
     parts: tuple[Mention, ...] = ()
     alternative: bool = False
     place: Mention | None = None
+    beside: bool = False
+    excepted: Mention | None = None

@@ -4,13 +4,29 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from typing import cast
 
 from polaris_nl.language.grammar import Grammar
 from polaris_nl.language.lexicon import Lexicon
 from polaris_nl.language.mention import Mention, Quantifier
-from polaris_nl.language.tokens import COMMA
+from polaris_nl.language.tokens import BREAK, COMMA, PhraseSet
 
-_AND, _OR = ("and",), ("or",)
+_SPEAKERS = ("me", "i", "us", "myself", "we")
+DESCRIPTIONS = 3
+"""Descriptions that can follow each other: "the ball on the floor by the bed in the corner"."""
+_JOINERS = PhraseSet(
+    (
+        ("as", "well", "as"),
+        ("along", "with"),
+        ("together", "with"),
+        ("and", "also"),
+        ("plus",),
+    )
+)
+_AGAIN = PhraseSet(
+    (("to",), ("on",), ("in",), ("into",), ("onto",), ("at",), ("from",), ("either", "to"))
+)
+"""Prepositions that are said again after "or": "on the desk or on the table"."""
 
 
 class MentionFinder:
@@ -19,33 +35,47 @@ class MentionFinder:
     def __init__(self, lexicon: Lexicon, grammar: Grammar) -> None:
         common = grammar.common
         self._lexicon = lexicon
-        self._determiners = set(common.words("determiners"))
+        self._determiners = set(common.determiners)
         self._quantifiers: dict[tuple[str, ...], Quantifier] = {}
-        self._quantifiers.update(dict.fromkeys(common.words("all"), "all"))
-        self._quantifiers.update(dict.fromkeys(common.words("both"), "both"))
-        self._numbers = {k: int(str(v)) for k, v in common.mapping("numbers").items()}
-        self._possessives = {k: str(v) or "any" for k, v in common.mapping("possessives").items()}
-        self._pronouns = {tuple(k.split()): k for k in common.mapping("pronouns")}
+        self._quantifiers.update(dict.fromkeys(common.all, "all"))
+        self._quantifiers.update(dict.fromkeys(common.both, "both"))
+        self._quantifiers.update(dict.fromkeys(common.rest, "rest"))
+        self._quantifiers.update(dict.fromkeys(common.none, "none"))
+        self._pro_quantifiers = {k: cast(Quantifier, v) for k, v in common.quantified.items()}
+        self._excepting = PhraseSet(common.excepting)
+        self._beside = PhraseSet(common.beside)
+        self._whereabouts = PhraseSet(common.whereabouts)
+        self._numbers = common.numbers
+        self._possessives = {k: v or "any" for k, v in common.possessives.items()}
+        self._pronouns = {tuple(k.split()): k for k in common.pronouns}
         self._adjectives = _adjectives(grammar)
-        self._which = sorted(
-            (tuple(x.split()) for x in _flat(common.lists.get("which-is", ""))),
-            key=len,
-            reverse=True,
-        )
-        self._from = sorted(
-            (tuple(x.split()) for x in _flat(common.lists.get("from", ""))), key=len, reverse=True
-        )
+        self._which = PhraseSet(common.listed("which-is"))
+        self._from = PhraseSet(common.listed("from"))
 
     def at(self, tokens: Sequence[str], start: int) -> tuple[Mention, ...]:
         """All mentions that start at a position: lists, places and single ones."""
         return tuple(self._all(tokens, start))
 
     def _all(self, tokens: Sequence[str], start: int) -> Iterator[Mention]:
+        if start < len(tokens) and tokens[start] == "neither":
+            for listed in self._all(tokens, start + 1):
+                if listed.parts and "nor" in tokens[start : listed.end]:
+                    yield replace(listed, start=start, quantifier="none", alternative=False)
         for single in self._single(tokens, start):
             placed = list(self._placed(tokens, single))
             for mention in (*placed, single):
+                yield from self._excepted(tokens, mention)
                 yield from self._listed(tokens, mention)
                 yield mention
+
+    def _excepted(self, tokens: Sequence[str], mention: Mention) -> Iterator[Mention]:
+        """`all the cups except the red one`."""
+        if not (mention.plural or mention.quantifier in ("all", "rest")):
+            return
+        size = self._excepting.length_at(tokens, mention.end)
+        for left_out in self.at(tokens, mention.end + size) if size else ():
+            text = " ".join(tokens[mention.start : left_out.end])
+            yield replace(mention, end=left_out.end, text=text, excepted=left_out)
 
     def _listed(self, tokens: Sequence[str], first: Mention) -> Iterator[Mention]:
         """`a, b and c`; `a or b`; each prefix that ends in a joined one."""
@@ -53,11 +83,15 @@ class MentionFinder:
         while at < len(tokens) and len(parts) < 12:
             step = at + 1 if tokens[at] == COMMA else at
             word = tokens[step] if step < len(tokens) else ""
-            if word in ("and", "or"):
+            joiner = _JOINERS.length_at(tokens, step)
+            if joiner:
+                step, word = step + joiner - 1, "and"
+            if word in ("and", "or", "nor"):
                 joined, alternative, step = True, alternative or word == "or", step + 1
                 if step < len(tokens) and tokens[step] == "then":
                     return
-            elif step == at:
+                step += _AGAIN.length_at(tokens, step) if alternative else 0
+            elif step == at and (word,) not in self._determiners:
                 return
             following = next(iter(self._single(tokens, step)), None)
             if following is None or following.pronoun:
@@ -69,18 +103,40 @@ class MentionFinder:
                 yield Mention(first.start, at, text, parts=tuple(parts), alternative=alternative)
 
     def _placed(self, tokens: Sequence[str], mention: Mention) -> Iterator[Mention]:
-        """`the cup on the counter`, `the cup that is in the sink`, `the cup from the table`."""
+        """`the cup on the counter by the sink`: what is said of a thing to tell it from others."""
+        if mention.pronoun and mention.pronoun != "one":
+            return
+        described = [mention]
+        for _ in range(DESCRIPTIONS):
+            described = [more for one in described for more in self._described(tokens, one)]
+            yield from described
+
+    def _described(self, tokens: Sequence[str], mention: Mention) -> Iterator[Mention]:
+        """One more description: an owner, a place, what is near, or "on the floor", which says nothing."""
         at = mention.end
-        which = _prefix(tokens, at, self._which)
-        inner = at + which
-        origin = _prefix(tokens, inner, self._from)
+        if tokens[at : at + 1] in (["of"], ("of",)):
+            yield from self._of(tokens, mention)
+        inner = at + self._which.length_at(tokens, at)
+        origin = self._from.length_at(tokens, inner)
         if not origin and inner < len(tokens) and tokens[inner] in ("on", "in", "at", "inside"):
             origin = 1
-        if origin:
-            for place in self._single(tokens, inner + origin):
-                if not place.pronoun or place.pronoun == "there":
-                    text = " ".join(tokens[mention.start : place.end])
-                    yield replace(mention, end=place.end, text=text, place=place)
+        for place in self._single(tokens, inner + origin) if origin else ():
+            if mention.place is None and (not place.pronoun or place.pronoun == "there"):
+                yield replace(_longer(tokens, mention, place.end), place=place)
+        # Which things are near others isn't known, so that only describes.
+        size = self._beside.length_at(tokens, inner)
+        for other in self._single(tokens, inner + size) if size else ():
+            if not other.pronoun:
+                yield replace(_longer(tokens, mention, other.end), beside=True)
+        size = self._whereabouts.length_at(tokens, inner)
+        if size:
+            yield replace(_longer(tokens, mention, inner + size), beside=True)
+
+    def _of(self, tokens: Sequence[str], mention: Mention) -> Iterator[Mention]:
+        """`the table of the resident`."""
+        for owner in self._single(tokens, mention.end + 1):
+            if owner.candidates and not mention.owner:
+                yield replace(_longer(tokens, mention, owner.end), owner=owner.candidates[0].entity)
 
     def _single(self, tokens: Sequence[str], start: int) -> Iterator[Mention]:
         yield from self._pronoun(tokens, start)
@@ -99,6 +155,7 @@ class MentionFinder:
             several = mention.quantifier or entry.plural
             found = replace(
                 mention,
+                quantifier=mention.quantifier or self._pro_quantifiers.get(tokens[at], ""),
                 end=end,
                 text=" ".join(tokens[start:end]),
                 candidates=entry.candidates,
@@ -107,9 +164,20 @@ class MentionFinder:
             )
             yield from self._possessed(tokens, found)
             yield found
+            if not entry.plural and self._wrong_apostrophe(tokens, end):
+                yield replace(_longer(tokens, found, end + 1), plural=True, kind=entry.kind)
         one = tokens[at : at + 1] in (["one"], ["ones"], ("one",), ("ones",))
-        if one and (mention.other or mention.states or at > start):
+        if one and (mention.other or mention.states or at > start or tokens[at] == "one"):
             yield replace(mention, end=at + 1, text=" ".join(tokens[start : at + 1]), pronoun="one")
+
+    def _wrong_apostrophe(self, tokens: Sequence[str], at: int) -> bool:
+        """Whether `'s` stands where nothing is owned: "the CD's from the table" are several."""
+        if tokens[at : at + 1] not in (["'s"], ("'s",)):
+            return False
+        following = tokens[at + 1] if at + 1 < len(tokens) else BREAK
+        return following in (BREAK, COMMA, "and") or any(
+            p.length_at([following], 0) for p in (self._from, _AGAIN)
+        )
 
     def _possessed(self, tokens: Sequence[str], owner: Mention) -> Iterator[Mention]:
         """`the resident's table`."""
@@ -139,11 +207,13 @@ class MentionFinder:
             return at + 1, replace(mention, number=self._numbers[word], quantifier="some")
         if word in self._possessives:
             return at + 1, replace(mention, owner=self._possessives[word])
-        if word == "other":
+        if word in ("other", "others"):
             return at + 1, replace(mention, other=True)
         if word in self._adjectives:
             return at + 1, replace(mention, states=(*mention.states, *self._adjectives[word]))
-        if (word,) in self._determiners:
+        if (word,) in self._determiners and not mention.owner:
+            return at + 1, mention
+        if word == "of" and mention.number:
             return at + 1, mention
         return at, mention
 
@@ -152,7 +222,7 @@ class MentionFinder:
             words = tuple(tokens[start : start + size])
             if len(words) == size and words in self._pronouns:
                 yield Mention(start, start + size, " ".join(words), pronoun=self._pronouns[words])
-        if tokens[start : start + 1] in (["me"], ["i"], ["myself"], ("me",), ("i",), ("myself",)):
+        if start < len(tokens) and tokens[start] in _SPEAKERS:
             yield Mention(start, start + 1, tokens[start], pronoun="me")
 
 
@@ -165,10 +235,5 @@ def _adjectives(grammar: Grammar) -> Mapping[str, tuple[tuple[str, bool], ...]]:
     return found
 
 
-def _flat(choice: str) -> list[str]:
-    return [option.strip() for option in choice.strip("()").split("|") if option.strip()]
-
-
-def _prefix(tokens: Sequence[str], at: int, phrases: Sequence[tuple[str, ...]]) -> int:
-    """The length of the longest of some phrases that stands at a position, or 0."""
-    return next((len(p) for p in phrases if tuple(tokens[at : at + len(p)]) == p), 0)
+def _longer(tokens: Sequence[str], mention: Mention, end: int) -> Mention:
+    return replace(mention, end=end, text=" ".join(tokens[mention.start : end]))

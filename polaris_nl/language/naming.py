@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from polaris_nl.automaton.automaton import Automaton
+from polaris_nl.automaton.edits import RenameCheckpoint
 from polaris_nl.language.grammar import Grammar
 from polaris_nl.model.formula import Goal, Literal, literals_in
 from polaris_nl.model.world import World
@@ -22,6 +23,19 @@ class Names:
     def checkpoint(self, goals: Sequence[Goal], when: Sequence[Literal], program: Automaton) -> str:
         """A name that no checkpoint of the program has."""
         return program.fresh_name(self._wanted(goals, when))
+
+    def renamed(
+        self, program: Automaton, checkpoint: str, goals: Sequence[Goal], when: Sequence[Literal]
+    ) -> Iterator[RenameCheckpoint]:
+        """The new name of a checkpoint whose goals change; none where the user named it."""
+        old = program.checkpoints[checkpoint]
+        incoming = program.incoming(checkpoint)
+        automatic = self._wanted(old.goals, incoming.when if incoming else ())
+        wanted = self._wanted(goals, when)
+        numbered = old.name.removeprefix(automatic).strip()
+        made = old.name.startswith(automatic) and (not numbered or numbered.isdigit())
+        if made and wanted != automatic:
+            yield RenameCheckpoint(checkpoint, program.fresh_name(wanted))
 
     def _wanted(self, goals: Sequence[Goal], when: Sequence[Literal]) -> str:
         for condition in when:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
-from polaris_nl.automaton.automaton import START, Automaton
-from polaris_nl.language.grammar import Common
+from polaris_nl.automaton.automaton import Automaton
+from polaris_nl.language.intents import Intent
 from polaris_nl.language.mention import Mention
-from polaris_nl.language.template import Parts, Slot, match
-from polaris_nl.language.tokens import BREAK, COMMA, phrase
+from polaris_nl.language.references import Reference, References
+from polaris_nl.language.template import Slot, first_words, match, slots_in
+from polaris_nl.language.tokens import BREAK, COMMA
 
 Span = tuple[int, int]
 
@@ -19,24 +20,37 @@ class Match:
     """A pattern that takes all of an utterance.
 
     Attributes:
-        intent: the key of its list in the grammar: `rename`, `where`, ...
-        slots: mentions for x and y, checkpoint ids for k and l, spans of tokens for everything
-            else.
+        intent: its name: `rename`, `where`, ...
+        slots: mentions for x and y, checkpoint ids for k and l, a number for q, spans of tokens for
+            everything else.
+        references: what stands for the checkpoints, by slot; where it fits several, the slot has the
+            latest of them.
+        tokens: what was matched; the spans are positions in it.
     """
 
     intent: str
     slots: Mapping[str, object]
+    references: Mapping[str, Reference] = field(default_factory=dict)
+    tokens: Sequence[str] = ()
 
 
 class Patterns:
-    """The patterns of one section of the shared grammar (`edits`, `queries`)."""
+    """The patterns of some intents, in order.
 
-    def __init__(self, common: Common, section: str) -> None:
-        self._templates = [
-            (intent, template)
-            for intent in common.mapping(section)
-            for template in common.templates(section, intent)
-        ]
+    Args:
+        intents: whose wordings they are.
+        references: finds the checkpoints that are meant.
+        numbers: number words.
+    """
+
+    def __init__(
+        self, intents: Sequence[Intent], references: References, numbers: Mapping[str, int]
+    ) -> None:
+        self._references = references
+        self._numbers = numbers
+        templates = [(intent.name, template) for intent in intents for template in intent.wordings]
+        # "What is there" means the world rather than what "there" is.
+        self._templates = sorted(templates, key=lambda t: any(slots_in(t[1])))
 
     def matches(
         self,
@@ -46,82 +60,58 @@ class Patterns:
         touched: Sequence[str],
     ) -> Iterator[Match]:
         """Every pattern that takes all of the tokens."""
+        known: dict[int, list[Reference]] = {}
         for intent, template in self._templates:
-            yield from matches_of(intent, template, tokens, mentions, program, touched)
 
+            def fillers(slot: Slot, at: int) -> Iterator[tuple[int, object]]:
+                if slot.name in ("k", "l"):
+                    if at not in known:
+                        found = self._references.at(tokens, at, program, touched, mentions)
+                        known[at] = sorted(found, key=lambda r: -r.end)
+                    yield from ((reference.end, reference) for reference in known[at])
+                elif slot.name == "q":
+                    number = self._numbers.get(tokens[at]) if at < len(tokens) else None
+                    yield from ((at + 1, number) for _ in range(number is not None))
+                else:
+                    yield from _others(slot, at, tokens, mentions)
 
-def matches_of(
-    intent: str,
-    template: Parts,
-    tokens: Sequence[str],
-    mentions: Sequence[Sequence[Mention]],
-    program: Automaton,
-    touched: Sequence[str],
-) -> Iterator[Match]:
-    """The ways in which one pattern takes all of the tokens."""
+            for end, bound in match(template, tokens, 0, fillers):
+                if end == len(tokens):
+                    references = {n: v for n, v in bound if isinstance(v, Reference)}
+                    ids = {name: found.ids[0] for name, found in references.items()}
+                    yield Match(intent, {**dict(bound), **ids}, references, tokens)
 
-    def fillers(slot: Slot, at: int) -> Iterator[tuple[int, object]]:
-        if slot.name in ("x", "y"):
-            for mention in mentions[at] if at < len(mentions) else ():
-                yield mention.end, mention
-        elif slot.name in ("k", "l"):
-            yield from checkpoints_at(tokens, at, program, touched)
-        else:
+    def unnamed(
+        self, tokens: Sequence[str], intents: Sequence[str]
+    ) -> Iterator[tuple[str, tuple[str, ...]]]:
+        """Patterns of some intents that would take all of the tokens if their words named checkpoints.
+
+        Yields:
+            The intent, and the words.
+        """
+
+        def fillers(slot: Slot, at: int) -> Iterator[tuple[int, object]]:
             for end in range(at + 1, len(tokens) + 1):
                 yield end, (at, end)
 
-    for end, bound in match(template, tokens, 0, fillers):
-        if end == len(tokens):
-            yield Match(intent, dict(bound))
+        for intent, template in self._templates:
+            if intent in intents and first_words(template) is not None:
+                for end, bound in match(template, tokens, 0, fillers):
+                    span = dict(bound).get("k")
+                    if end == len(tokens) and isinstance(span, tuple):
+                        yield intent, tuple(tokens[span[0] : span[1]])
 
 
-_PART = ("step", "part", "checkpoint", "one", "branch", "bit", "goal")
-_ORDINALS = {
-    "first": 0,
-    "second": 1,
-    "third": 2,
-    "fourth": 3,
-    "fifth": 4,
-    "sixth": 5,
-    "last": -1,
-    "latest": -1,
-}
-
-
-def checkpoints_at(
-    tokens: Sequence[str], at: int, program: Automaton, touched: Sequence[str]
-) -> Iterator[tuple[int, str]]:
-    """Checkpoints that are meant by name, by number or by recency: (end, id)."""
-    start = at
-    while (
-        at < len(tokens)
-        and tokens[at] in ("the", "this", "that", "checkpoint", "step")
-        and at - start < 2
-    ):
-        at += 1
-    made = [c for c in program.checkpoints if c != START]
-    for checkpoint in made:
-        name = phrase(program.checkpoints[checkpoint].name)
-        if tuple(tokens[at : at + len(name)]) == name:
-            end = at + len(name)
-            yield end, checkpoint
-            if tokens[end : end + 1] and tokens[end] in _PART:
-                yield end + 1, checkpoint
-    word = tokens[at] if at < len(tokens) else ""
-    if word in _ORDINALS and made:
-        number = _ORDINALS[word]
-        latest = touched[-1] if touched and touched[-1] in made else made[-1]
-        chosen = latest if number == -1 else (made[number] if number < len(made) else None)
-        if chosen is not None:
-            end = at + 1
-            while end < len(tokens) and tokens[end] in _PART:
-                end += 1
-            if end > at + 1:
-                yield end, chosen
-    if start == at and word in ("it", "that") and touched and touched[-1] in made:
-        yield at + 1, touched[-1]
-    elif at == start + 1 and tokens[start] in ("that", "this") and touched and touched[-1] in made:
-        yield at, touched[-1]
+def _others(
+    slot: Slot, at: int, tokens: Sequence[str], mentions: Sequence[Sequence[Mention]]
+) -> Iterator[tuple[int, object]]:
+    """Mentions for x and y, any words for the other slots."""
+    if slot.name in ("x", "y"):
+        for mention in mentions[at] if at < len(mentions) else ():
+            yield mention.end, mention
+    else:
+        for end in range(at + 1, len(tokens) + 1):
+            yield end, (at, end)
 
 
 def strip(tokens: Sequence[str], fillers: Sequence[tuple[str, ...]]) -> list[str]:

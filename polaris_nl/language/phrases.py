@@ -11,7 +11,8 @@ import itertools
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from polaris_nl.language.grammar import Grammar, Phrases
+from polaris_nl.language.grammar import Grammar
+from polaris_nl.language.predicate_phrases import Phrases
 from polaris_nl.language.template import Choice, Part, Parts, Slot, Word
 from polaris_nl.language.tokens import phrase
 from polaris_nl.model.domain import Predicate
@@ -86,29 +87,26 @@ class _Maker:
             for source in _sources(phrases, world.domain.predicates[phrases.predicate])
         ]
         common = grammar.common
-        self._ifs = common.words("connectives", "if")[::-1]  # short ones first
-        self._thens = common.words("connectives", "then")[::-1]
+        self._ifs = common.connectives["if"][::-1]  # short ones first
+        self._thens = common.connectives["then"][::-1]
 
     def fixed(self) -> Iterator[Sequence[str]]:
         """Commands, connectives, and every name by itself."""
         common = self._grammar.common
-        for command in common.mapping("commands"):
-            yield from common.words("commands", command)
-        yield from common.words("neither")
-        for mark in common.mapping("connectives"):
-            yield from common.words("connectives", mark)
-        for section in ("fillers", "assure"):
-            yield from common.words(section)
+        for command in common.of_kind("command"):
+            yield from command.phrases
+        yield from common.neither
+        for phrases in common.connectives.values():
+            yield from phrases
+        yield from (*common.fillers, *common.assure)
         for kind, names in self._names.items():
             for words in names:
                 yield words
                 yield from ((*lead, *words) for lead in _LEADS.get(kind, (("the",),)))
-        for section in ("queries", "edits"):
-            for key in common.mapping(section):
-                for template in common.templates(section, key):
-                    yield from self._drawn(_Source(template, section), 6)
-        for template in common.templates("corrections"):
-            yield from self._drawn(_Source(template, "corrections"), 12)
+        for intent in (i for i in common.intents if i.kind != "command"):
+            for template in intent.wordings:
+                count = 12 if intent.kind == "correction" else 6
+                yield from self._drawn(_Source(template, intent.kind), count)
 
     def clauses(self, room: int) -> Iterator[Sequence[str]]:
         """Goals, conditions and questions about facts, from every wording as many as it has choices."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 
+from polaris_nl.language.common import Common
 from polaris_nl.language.dialogue import Pending
-from polaris_nl.language.grammar import Common
 from polaris_nl.language.mention import Mention
 from polaris_nl.language.resolve import EVERY_ONE, Misfit, Resolver, Scope
 from polaris_nl.language.tokens import BREAK, COMMA, phrase
@@ -23,8 +23,8 @@ class Questions:
     """Puts questions and reads answers."""
 
     def __init__(self, common: Common, resolver: Resolver, wording: GrammarWording) -> None:
-        self._ordinals = {k: int(str(v)) for k, v in common.mapping("ordinals").items()}
-        self._neither = set(common.words("neither"))
+        self._ordinals = common.ordinals
+        self.neither = set(common.neither)
         self._resolver = resolver
         self._wording = wording
 
@@ -46,7 +46,7 @@ class Questions:
             Unclear: it may be the answer, but has several meanings.
         """
         tokens = [t for t in tokens if t not in (COMMA, BREAK)]
-        if tuple(tokens) in self._neither:
+        if tuple(tokens) in self.neither:
             return ()
         one = self._by_words(tokens, pending.options)
         if one is not None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Collection, Sequence
 
 from rapidfuzz import process
@@ -23,6 +24,8 @@ _SMALL = frozenset(
         "from", "do", "not", "then", "now", "please", "just", "some",
     }
 )  # fmt: skip
+_TELLING = ("at", "alerted-to", "open", "robot-at", "in", "has")
+"""Predicates that make the best examples, where a domain has them."""
 NEAR = 80
 """How alike a word and a name must be, in percent, to ask whether the name was meant."""
 
@@ -77,6 +80,10 @@ class Refusals:
             return f'I can\'t make a goal of "{words}" here. {self.examples()}'
         return f"I don't see what should be achieved. {self.examples()}"
 
+    def told(self) -> str:
+        """What to say where an utterance only tells how things are."""
+        return f"That tells me how things are, but not what to achieve. {self.examples()}"
+
     def help(self) -> str:
         """What can be said."""
         return (
@@ -87,14 +94,17 @@ class Refusals:
     def examples(self) -> str:
         """Two or three things that can be asked of this robot, about things in this world."""
         found = []
-        for name in ("at", "alerted-to", "open", "robot-at", "in", "has"):
-            predicate = self._world.domain.predicates.get(name)
-            if predicate is None or not self._world.domain.achievers(Literal(name)):
+        domain = self._world.domain
+        for name in dict.fromkeys((*_TELLING, *domain.predicates)):
+            predicate = domain.predicates.get(name)
+            if predicate is None or predicate.internal or not domain.achievers(Literal(name)):
                 continue
-            args = [next(self._world.of_type(*p.types), None) for p in predicate.parameters]
-            if all(args):
-                literal = Literal(name, tuple(a.name for a in args if a))
-                found.append(f'"{self._wording.goal(literal)}"')
+            args: list[str] = []
+            for parameter in predicate.parameters:
+                others = (e.name for e in self._world.of_type(*parameter.types))
+                args.extend(itertools.islice((e for e in others if e not in args), 1))
+            if len(args) == len(predicate.parameters):
+                found.append(f'"{self._wording.goal(Literal(name, tuple(args)))}"')
         return f"You can say, for example, {listed(found[:3], 'or')}." if found else "Say a goal."
 
     def _near(self, words: Sequence[str]) -> list[str]:

@@ -3,13 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 
 from polaris_nl.language.clauses import Clause
-from polaris_nl.language.mention import Candidate, Mention
-from polaris_nl.model.formula import And, Formula, Imply, Literal, Quantified, Variable
+from polaris_nl.language.mention import ASKED, EVERYTHING, WORDLESS, Candidate, Mention
+from polaris_nl.model.formula import (
+    And,
+    Equal,
+    Formula,
+    Imply,
+    Literal,
+    Not,
+    Quantified,
+    Variable,
+    bind,
+    literals_in,
+)
+from polaris_nl.model.text import listed
+from polaris_nl.model.wording import Wording
 from polaris_nl.model.world import World
 
+KIND_RANK = 3
+"""The rank of a candidate of which only the type was named."""
+_INDEFINITE = ("a ", "an ", "any ", "some ", "one of ")
+_ONE_PLACE = ("at", "in")
 _PLACE_PREDICATES = ("at", "in", "person-in", "located", "has")
 
 
@@ -52,11 +70,13 @@ class Scope:
         referents: entities, the latest last.
         group: the entities of the latest plural mention.
         choices: what the user has answered for phrases and missing parameters that were asked about.
+        told: who was told of what, the latest last.
     """
 
     referents: tuple[str, ...] = ()
     group: tuple[str, ...] = ()
     choices: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    told: tuple[tuple[str, str], ...] = ()
 
     def after(self, entities: Sequence[str]) -> Scope:
         """The scope once entities were mentioned."""
@@ -69,17 +89,23 @@ class Scope:
 
 @dataclass(frozen=True, slots=True)
 class Meant:
-    """What a mention means: entities, or every entity of a kind."""
+    """What a mention means: entities, every entity of a kind, or none of some.
+
+    Attributes:
+        negated: it is said of none of the entities.
+    """
 
     entities: tuple[str, ...] = ()
     every: Quantified | None = None
+    negated: bool = False
 
 
 class Resolver:
     """Resolves mentions in one world."""
 
-    def __init__(self, world: World) -> None:
+    def __init__(self, world: World, wording: Wording) -> None:
         self._world = world
+        self._wording = wording
 
     def literals(
         self, clause: Clause, scope: Scope, condition: bool
@@ -101,23 +127,106 @@ class Resolver:
             if f"?{n}" not in {p.name for p in predicate.parameters}
         ]
         for _, mention in extra:
-            scope = scope.after(self.meant(mention, ("person",), scope, condition).entities)
+            # Who puts the cup there doesn't matter, so nobody is asked.
+            with suppress(Unclear, Misfit):
+                scope = scope.after(self.meant(mention, (), scope, condition).entities)
         chosen: list[Meant] = []
         for parameter in predicate.parameters:
             bound = bindings.get(parameter.name.lstrip("?"))
             if bound is None:
                 chosen.append(self._implied(clause, parameter, scope))
                 continue
+            if bound.text == EVERYTHING and not bound.candidates:
+                chosen.append(self._all_there(clause, parameter, scope))
+                continue
+            if bound.text == ASKED and not bound.candidates:
+                chosen.append(self._answered(parameter, scope))
+                continue
             meant = self.meant(bound, parameter.types, scope, condition)
             scope = scope.after(meant.entities)
             chosen.append(meant)
         goals = self._combined(clause, chosen)
+        told = tuple(x.args for x in goals if isinstance(x, Literal) and self._tells(x))
+        if told and not condition:
+            scope = replace(scope, told=(*scope.told, *((a[0], a[1]) for a in told)))
         for name, mention in bindings.items():
+            if mention.text in WORDLESS and not mention.candidates:
+                continue
             parameter_types = next(
                 (p.types for p in predicate.parameters if p.name == f"?{name}"), ()
             )
             goals += self._said_of(mention, parameter_types, scope, condition)
         return tuple(dict.fromkeys(goals)), scope
+
+    def _all_there(self, clause: Clause, parameter: Variable, scope: Scope) -> Meant:
+        """Everything of which a clause holds: "clear the table" is about all that is on it."""
+        predicate = self._world.domain.predicates[clause.predicate]
+        bindings = dict(clause.bindings)
+        args = []
+        for other in predicate.parameters:
+            named = bindings.get(other.name.lstrip("?"))
+            if other.name == parameter.name or named is None:
+                args.append("?x")
+            else:
+                args.append(self.meant(named, other.types, scope).entities[0])
+        variable = Variable("?x", parameter.types)
+        there = Literal(clause.predicate, tuple(args))
+        return Meant((), Quantified("forall", (variable,), there))
+
+    def said(self, goals: Sequence[Formula]) -> str:
+        """Goals in words, to choose from."""
+        return listed([self._wording.goal(goal) for goal in goals])
+
+    def instead(
+        self, goals: Sequence[Formula], mention: Mention, scope: Scope
+    ) -> tuple[tuple[Formula, ...], Scope]:
+        """Goals with another entity in the place of one of its type: "the same for the plate".
+
+        Returns:
+            The goals, none where nothing in them can be replaced, and the scope after them.
+
+        Raises:
+            Unclear: a question has to be asked.
+        """
+        try:
+            meant = self.meant(mention, (), scope).entities
+        except Misfit:
+            return (), scope
+        found: list[Formula] = []
+        for name in meant:
+            kind = self._world.entities[name].type
+            used = dict.fromkeys(
+                a for g in goals for x in literals_in(g) for a in x.args if self._is(a, (kind,))
+            )
+            old = next((u for u in used if u not in meant), None)
+            if old is not None:
+                found.extend(g for goal in goals if (g := bind(goal, {old: name})) != goal)
+        return tuple(dict.fromkeys(found)), scope.after(meant)
+
+    def without(
+        self, goals: Sequence[Formula], mention: Mention, scope: Scope
+    ) -> tuple[tuple[Formula, ...], Scope]:
+        """Goals without what they ask of some entities, and the scope after them.
+
+        Raises:
+            Unclear: a question has to be asked.
+            Misfit: nothing that is known fits.
+        """
+        used = {a for g in goals for x in literals_in(g) for a in x.args if not a.startswith("?")}
+        kinds = {x.args[1] for g in goals for x in literals_in(g) if x.predicate == "kind"}
+        about = tuple(
+            e.name for e in self._world.entities.values()
+            if e.name in used or kinds & {e.noun, *e.kinds} or e.name in kinds
+        )  # fmt: skip
+        left_out = self.meant(mention, (), scope.after(about)).entities
+        found: list[Formula] = []
+        for goal in goals:
+            if isinstance(goal, Quantified) and isinstance(goal.body, Imply):
+                parts = (goal.body.condition, *(Not(Equal("?x", name)) for name in left_out))
+                found.append(replace(goal, body=replace(goal.body, condition=And(parts))))
+            elif not any(x.args[:1] == (name,) for x in literals_in(goal) for name in left_out):
+                found.append(goal)
+        return tuple(found), scope.after(left_out)
 
     def _combined(self, clause: Clause, chosen: Sequence[Meant]) -> tuple[Formula, ...]:
         every = [m for m in chosen if m.every is not None]
@@ -125,13 +234,20 @@ class Resolver:
         for meant in chosen:
             terms = ("?x",) if meant.every is not None else meant.entities
             rows = [(*row, term) for row in rows for term in terms]
-        literals = tuple(Literal(clause.predicate, row, clause.positive) for row in rows)
+        positive = clause.positive and not any(m.negated for m in chosen)
+        literals = tuple(Literal(clause.predicate, row, positive) for row in rows)
+        things = {x.args[:1] for x in literals}
+        if positive and clause.predicate in _ONE_PLACE and len(things) < len(literals):
+            raise Misfit(
+                "One thing can't be in two places at once; say for each where it should go."
+            )
         if not every:
             return literals
         quantified = every[0].every
         assert quantified is not None
+        whole = quantified.body == And(())
         return tuple(
-            Quantified("forall", quantified.variables, Imply(quantified.body, literal))
+            replace(quantified, body=literal if whole else Imply(quantified.body, literal))
             for literal in literals
         )
 
@@ -158,9 +274,31 @@ class Resolver:
         answered = scope.choices.get(parameter.name)
         if answered:
             return Meant(answered)
+        told = self._told(parameter, scope)
+        if told is not None:
+            return Meant((told,))
         for name in reversed(scope.referents):
             if self._is(name, parameter.types):
                 return Meant((name,))
+        return self._answered(parameter, scope)
+
+    def _tells(self, literal: Literal) -> bool:
+        """Whether a person is told a message."""
+        kinds = [self._world.entities[a].type for a in literal.args if a in self._world.entities]
+        return literal.positive and kinds == ["person", "message"]
+
+    def _told(self, parameter: Variable, scope: Scope) -> str | None:
+        """The message that the person spoken of last was told: "once she acknowledges" is about hers."""
+        if "message" not in parameter.types:
+            return None
+        people = [r for r in reversed(scope.referents) if self._is(r, ("person",))]
+        return dict(scope.told).get(people[0]) if people else None
+
+    def _answered(self, parameter: Variable, scope: Scope) -> Meant:
+        """What was answered for a parameter, the only thing that fits, or a question."""
+        answered = scope.choices.get(parameter.name)
+        if answered:
+            return Meant(answered)
         fitting = [e.name for e in self._world.of_type(*parameter.types)]
         if len(fitting) == 1:
             return Meant((fitting[0],))
@@ -187,14 +325,19 @@ class Resolver:
             entities = [
                 n for p in mention.parts for n in self.meant(p, types, scope, condition).entities
             ]
-            return Meant(tuple(dict.fromkeys(entities)))
+            return Meant(tuple(dict.fromkeys(entities)), negated=mention.quantifier == "none")
         if mention.pronoun and mention.pronoun != "one":
             return self._pronoun(mention, types, scope)
         names = self._fitting(mention, types, scope)
         if not names:
             raise Misfit(self._nothing_fits(mention, types))
+        if mention.quantifier == "none":
+            return Meant(tuple(names), negated=True)
+        if mention.quantifier == "rest" or (mention.other and mention.plural):
+            rest = tuple(n for n in names if n not in scope.referents)
+            return Meant(rest or tuple(names))
         if mention.quantifier == "all" and not condition:
-            return self._every(mention, types, names)
+            return self._every(mention, types, names, scope)
         if mention.quantifier in ("all", "both") or (mention.plural and not mention.number):
             if mention.quantifier == "both" and len(names) > 2:
                 return self._several(names, mention, scope, 2)
@@ -244,7 +387,8 @@ class Resolver:
         if len(names) == 1:
             return Meant((names[0],))
         recent = [r for r in reversed(scope.referents) if r in names]
-        if recent and not mention.other and not mention.alternative:
+        told_apart = mention.other or mention.alternative or mention.text.startswith(_INDEFINITE)
+        if recent and not told_apart:
             return Meant((recent[0],))
         # The user's choice wins, then what was mentioned before; else it is asked.
         options = self._spoken(names)
@@ -271,10 +415,16 @@ class Resolver:
             )
             candidates = [c for c in candidates if c.entity != last]
         candidates = self._described(candidates, mention)
+        left_out = self._excepted(mention, types, scope)
+        candidates = [c for c in candidates if c.entity not in left_out]
         if not candidates:
             return []
         if mention.quantifier or mention.plural or mention.number:
             return [c.entity for c in candidates]
+        if mention.text.startswith(_INDEFINITE):
+            return [c.entity for c in candidates if c.rank < KIND_RANK] or [
+                c.entity for c in candidates
+            ]
         best = min(c.rank for c in candidates)
         return [c.entity for c in candidates if c.rank == best]
 
@@ -364,13 +514,21 @@ class Resolver:
         chosen = scope.choices.get(mention.text, ())
         if chosen and all(self._is(n, types) for n in chosen):
             return Meant(chosen)
+        told = (
+            self._told(Variable("?m", tuple(types)), scope)
+            if tuple(types) == ("message",)
+            else None
+        )
+        if told is not None:
+            return Meant((told,))
         fitting = [
             r
             for r in reversed(scope.referents)
             if self._is(r, types) and (not gender or self._world.entities[r].gender in (gender, ""))
         ]
         if fitting:
-            return Meant((fitting[0],))
+            sure = [r for r in fitting if gender and self._world.entities[r].gender == gender]
+            return Meant(((sure or fitting)[0],))
         known = [e.name for e in self._world.of_type(*types) if not gender or e.gender == gender]
         if gender and len(known) == 1:
             return Meant((known[0],))
@@ -386,7 +544,11 @@ class Resolver:
         options = self._spoken(people)
         raise Unclear(f'Who do you mean by "{mention.text}"?', options, mention.text, ("person",))
 
-    def _every(self, mention: Mention, types: Sequence[str], names: Iterable[str]) -> Meant:
+    def _every(
+        self, mention: Mention, types: Sequence[str], names: Sequence[str], scope: Scope
+    ) -> Meant:
+        if self._in_a_region(mention, scope):
+            return Meant(tuple(names))
         kind = mention.kind or (types[0] if types else "object")
         variable = Variable("?x", (types[0] if types else "object",))
         parts: list[Formula] = []
@@ -397,8 +559,24 @@ class Resolver:
             there = self.meant(mention.place, ("surface", "container"), Scope()).entities
             predicate = "in" if self._is(there[0], ("container",)) else "at"
             parts.append(Literal(predicate, ("?x", there[0])))
+        left_out = self._excepted(mention, types, scope)
+        parts.extend(Not(Equal("?x", name)) for name in left_out)
         body = parts[0] if len(parts) == 1 else And(tuple(parts))
         return Meant(tuple(names), Quantified("forall", (variable,), body))
+
+    def _in_a_region(self, mention: Mention, scope: Scope) -> bool:
+        """Whether a place is a room: what is on and in the things there has no predicate of its own."""
+        if mention.place is None:
+            return False
+        place = self.meant(mention.place, ("surface", "container", "region"), scope).entities
+        return self._is(place[0], ("region",))
+
+    def _excepted(self, mention: Mention, types: Sequence[str], scope: Scope) -> tuple[str, ...]:
+        """What is left out. "All the cups except the red one": "one" is a cup."""
+        if mention.excepted is None:
+            return ()
+        of_kind = tuple(c.entity for c in mention.candidates)
+        return self.meant(mention.excepted, types, scope.after(of_kind)).entities
 
     def _is(self, entity: str, types: Sequence[str]) -> bool:
         known = self._world.entities.get(entity)

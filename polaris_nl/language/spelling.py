@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from rapidfuzz.distance import OSA
 
@@ -13,8 +13,6 @@ from polaris_nl.language.ordinary import is_ordinary
 from polaris_nl.language.template import vocabulary
 from polaris_nl.language.tokens import BREAK, COMMA, phrase
 
-_NO_PHRASES = ("schema", "lists", "queries", "edits", "corrections")
-_KEYS = ("refused", "pronouns", "possessives", "numbers", "ordinals")
 SHORTEST = 4
 SAFE = 6
 """Letters from which a word with one other letter is taken for a slip rather than another word."""
@@ -28,26 +26,31 @@ class Spelling:
     def __init__(self, grammar: Grammar, lexicon: Lexicon) -> None:
         self._names = frozenset(w for w in lexicon.vocabulary if len(w) >= SHORTEST)
         known = set(lexicon.vocabulary)
-        common = grammar.common
         for phrases in grammar.predicates.values():
             for templates in phrases.wordings.values():
                 known.update(word for t in templates for word in vocabulary(t))
             known.update((*phrases.adjectives, *phrases.not_adjectives))
-        for section in ("queries", "edits"):
-            for intent in common.mapping(section):
-                known.update(w for t in common.templates(section, intent) for w in vocabulary(t))
-        known.update(w for t in common.templates("corrections") for w in vocabulary(t))
-        known.update(_all_words({k: v for k, v in common.values.items() if k not in _NO_PHRASES}))
-        for key in _KEYS:
-            known.update(w for k in common.mapping(key) for w in phrase(k))
+        known.update(grammar.common.vocabulary)
         self.known = frozenset(known)
         self._words = frozenset(w for w in known - self._names if len(w) >= SHORTEST)
-        self._language = common.language
+        self._language = grammar.common.language
 
     def mended(self, tokens: Sequence[str], program: Automaton) -> list[str]:
         """Tokens with clear slips mended; words of checkpoint names count as known."""
         names = {w for c in program.checkpoints.values() for w in phrase(c.name)}
-        return [self._mended(token, names) for token in tokens]
+        return [self._mended(token, names) for token in self._joined(tokens)]
+
+    def _joined(self, tokens: Sequence[str]) -> Iterator[str]:
+        """Tokens with names written as one word that were written as two: "night stand"."""
+        at = 0
+        while at < len(tokens):
+            pair = "".join(tokens[at : at + 2])
+            if len(pair) >= LONG and pair in self._names and pair not in tokens[at : at + 1]:
+                yield pair
+                at += 2
+            else:
+                yield tokens[at]
+                at += 1
 
     def _mended(self, token: str, names: set[str]) -> str:
         if (
@@ -80,14 +83,3 @@ def _another(token: str, word: str) -> bool:
     if len(token) == len(word):
         return len(token) < SAFE and sorted(token) != sorted(word)
     return token.startswith(word) and token[-1] != word[-1]
-
-
-def _all_words(value: object) -> set[str]:
-    """Every word in the plain phrases of a grammar file."""
-    if isinstance(value, str):
-        return set(phrase(value)) if not any(c in value for c in "{<(|[") else set()
-    if isinstance(value, Mapping):
-        return {w for v in value.values() for w in _all_words(v)}
-    if isinstance(value, list):
-        return {w for item in value for w in _all_words(item)}
-    return set()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 from polaris_nl.automaton.automaton import Automaton, Checkpoint, Transition
 from polaris_nl.automaton.edits import (
@@ -15,19 +15,9 @@ from polaris_nl.automaton.edits import (
     apply,
 )
 from polaris_nl.language.naming import Names
-from polaris_nl.language.resolve import Misfit, Resolver, Scope
-from polaris_nl.language.segment import Cut, Item
-from polaris_nl.model.formula import Formula, Goal, Literal, literals_in
+from polaris_nl.language.resolve import Misfit
+from polaris_nl.model.formula import Goal, Literal, literals_in
 from polaris_nl.model.world import World
-
-SEPARATE = ("robot-at", "alerted-to", "person-in", "holding", "has")
-"""Goals that are steps of their own when joined by "and": where the robot is, and what happens to people."""
-
-
-_SEQUELS = ("then", "and then", "after that", "and after that", "afterwards", "and afterwards")
-"""Words in front of a condition that keep it where the program has come to."""
-_GOING_ON = (*_SEQUELS[1:], "and finally", "and next", "finally", "after this")
-"""Words after a condition that stands behind its goal: "bring it once she acknowledges, and then ..."."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,12 +29,17 @@ class Step:
             others can't be.
         sequel: the condition is waited for after the step before ("then once ..."), and starts no
             branch further up.
+        done: it is spoken of as done by then ("once you have filled it, ..."), so it is no new step
+            where the program has come to it already.
+        forbidden: what "do not" was said of, where the goals are its opposite.
     """
 
     goals: tuple[Goal, ...] = ()
     when: tuple[Literal, ...] = ()
     role: str = "then"
     sequel: bool = False
+    done: bool = False
+    forbidden: tuple[Goal, ...] = ()
 
 
 @dataclass
@@ -70,6 +65,8 @@ class Builder:
         Raises:
             Misfit: it is a second "otherwise".
         """
+        if step.done and set(step.goals) <= set(self.program.checkpoints[self.here].goals):
+            return
         if step.role == "else":
             self._otherwise(step)
         elif step.role == "condition":
@@ -173,10 +170,9 @@ class Builder:
 
     def _sibling(self, when: Sequence[Literal]) -> str | None:
         """Where the way to here branched on a condition about the same things."""
-        about = {arg for x in when for arg in x.args}
+        about = _subjects(when)
         for transition in reversed(self.program.path(self.here)):
-            labels = {arg for x in transition.when for arg in x.args}
-            if transition.when and about & labels:
+            if about & _subjects(transition.when):
                 return transition.source
         return None
 
@@ -190,183 +186,6 @@ class Builder:
         return None
 
 
-def steps_of(
-    cut: Cut, resolver: Resolver, scope: Scope, branched: bool = False
-) -> tuple[list[Step], Scope]:
-    """The steps that a cut utterance asks for, in order.
-
-    Args:
-        cut: the utterance, cut into clauses.
-        resolver: finds the entities that are meant.
-        scope: what has been mentioned before.
-        branched: there is a branch already that "otherwise" can belong to.
-
-    Returns:
-        They, and the scope after them.
-
-    Raises:
-        Unclear: a question has to be asked.
-        Misfit: the reading can't be.
-    """
-    reader = _Reader(cut.items, resolver, scope, branched)
-    while reader.at < len(reader.items):
-        reader.read()
-    reader.finish()
-    return reader.steps, reader.scope
-
-
-class _Reader:
-    """Walks over items with the conditions that wait for their goals."""
-
-    def __init__(
-        self, items: Sequence[Item], resolver: Resolver, scope: Scope, branched: bool
-    ) -> None:
-        self._branched = branched
-        self._sequel = False
-        self.items = list(items)
-        self.resolver = resolver
-        self.scope = scope
-        self.at = 0
-        self.steps: list[Step] = []
-        self._when: tuple[Literal, ...] = ()
-        self._how = ""
-        self._waits = False
-        self._else_next = False
-        self._new_step = True
-        self._negate = False
-        self._unless: tuple[Literal, ...] = ()
-        self._postposed = _all_postposed(self.items)
-
-    def read(self) -> None:
-        """Takes one item."""
-        item = self.items[self.at]
-        self.at += 1
-        if item.mark in ("if", "until", "unless"):
-            self._condition(item.mark)
-        elif item.mark in ("then", "break"):
-            self._new_step = True
-            self._sequel = item.mark == "then" and item.text in _SEQUELS
-        elif item.mark == "else":
-            if self._how == "until":
-                self.finish()
-            if not self.steps and not self._branched:
-                raise Misfit(
-                    '"Otherwise" needs a condition before it: say "if ..., ... otherwise ...".'
-                )
-            self._else_next, self._new_step = True, True
-        elif item.mark == "not":
-            self._negate = True
-        elif item.role == "goal":
-            self._goal(item)
-
-    def finish(self) -> None:
-        """A wait that nothing follows becomes an empty checkpoint."""
-        if self._how in ("until", "if") and self._when:
-            if self._how == "if":
-                raise Misfit(
-                    "What should I do then? Say the condition and what to do, in one sentence."
-                )
-            self.steps.append(Step((), self._when, "condition", self._waits))
-        if self._unless:
-            raise Misfit('"Unless" needs something to do: say "unless ..., ...".')
-        self._when, self._how = (), ""
-
-    def _condition(self, mark: str) -> None:
-        literals: list[Literal] = []
-        while self.at < len(self.items):
-            item = self.items[self.at]
-            if item.role == "condition":
-                literals.extend(self._literals(item, condition=True))
-            elif not (item.mark in ("and", "comma") and self._condition_follows()):
-                break
-            self.at += 1
-        when = tuple(dict.fromkeys(literals))
-        previous = self.steps[-1] if self.steps else None
-        if previous is not None and not self._new_step and self._belongs_to_previous():
-            self._attach(previous, when, mark)
-        elif mark == "unless":
-            self._unless = when
-        else:
-            self.finish()
-            self._when, self._how = when, mark
-            self._waits = self._sequel or mark == "until"
-        self._new_step, self._sequel = True, False
-
-    def _condition_follows(self) -> bool:
-        following = self.items[self.at + 1 :]
-        return bool(following) and following[0].role == "condition"
-
-    def _belongs_to_previous(self) -> bool:
-        """Whether a condition stands behind what it is for: "go home if she dismisses it"."""
-        rest = [i for i in self.items[self.at :] if i.mark != "comma"]
-        if not rest or rest[0].mark in ("break", "else", "if", "until", "unless"):
-            return True
-        goes_on = rest[0].mark == "then" and rest[0].text in _GOING_ON
-        return goes_on or self._postposed
-
-    def _attach(self, previous: Step, when: tuple[Literal, ...], mark: str) -> None:
-        if mark == "unless":
-            self.steps[-1:] = [Step((), when, "condition"), replace(previous, role="else")]
-        elif (
-            mark == "until"
-            and all(not x.positive for x in _flat(previous.goals))
-            and previous.goals
-        ):
-            # "Don't open it until she comes" is "when she comes, open it".
-            goals = tuple(x.negation for x in _flat(previous.goals))
-            self.steps[-1] = Step(goals, when, "condition")
-        elif mark == "until":
-            self._when, self._how, self._waits = when, mark, True
-        else:
-            self.steps[-1] = replace(previous, when=when, role="condition")
-
-    def _goal(self, item: Item) -> None:
-        goals = self._literals(item, condition=False)
-        if self._negate:
-            goals = tuple(g.negation if isinstance(g, Literal) else g for g in goals)
-            self._negate = False
-        if self._unless:
-            self.steps.append(Step((), self._unless, "condition"))
-            self.steps.append(Step(goals, (), "else"))
-            self._unless = ()
-        elif self._else_next:
-            self.steps.append(Step(goals, (), "else"))
-            self._else_next = False
-        elif self._when:
-            self.steps.append(Step(goals, self._when, "condition", self._waits))
-            self._when, self._how = (), ""
-        elif self._new_step or self._separate(goals):
-            self.steps.append(Step(goals))
-        else:
-            last = self.steps[-1]
-            self.steps[-1] = replace(last, goals=tuple(dict.fromkeys((*last.goals, *goals))))
-        self._new_step = False
-
-    def _separate(self, goals: Sequence[Goal]) -> bool:
-        """Whether goals joined by "and" are a step of their own."""
-        if not self.steps:
-            return True
-        both = (*_flat(self.steps[-1].goals), *_flat(goals))
-        return any(x.predicate in SEPARATE for x in both)
-
-    def _literals(self, item: Item, condition: bool) -> tuple[Literal, ...]:
-        assert item.clause is not None
-        found, self.scope = self.resolver.literals(item.clause, self.scope, condition)
-        return found  # type: ignore[return-value]
-
-
-def _flat(goals: Sequence[Formula]) -> tuple[Literal, ...]:
-    return tuple(goal for goal in goals if isinstance(goal, Literal))
-
-
-def _all_postposed(items: Sequence[Item]) -> bool:
-    """Whether goals and conditions alternate and a condition ends: "A if x and B if y"."""
-    roles = [i.role for i in items if i.role in ("goal", "condition")]
-    marks = [i.mark for i in items]
-    if len(roles) < 4 or "until" in marks or "then" in marks:
-        return False
-    return (
-        roles[0] == "goal"
-        and roles[-1] == "condition"
-        and roles == ["goal", "condition"] * (len(roles) // 2)
-    )
+def _subjects(literals: Sequence[Literal]) -> set[str]:
+    """What literals are about: the first argument, but for what a person has the thing."""
+    return {x.args[-1 if x.predicate == "has" else 0] for x in literals if x.args}

@@ -8,14 +8,15 @@ of the predicate's parameter.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Protocol, TypeVar
 
 from polaris_nl.language.tokens import phrase
-from polaris_nl.model.errors import GrammarError
+from polaris_nl.model.errors import GrammarError, did_you_mean
 
-_SYMBOL = re.compile(r"[()|\[\]]|\{[^}]*\}|<[^>]*>|[^\s()|\[\]{}<>]+")
+_SYMBOL = re.compile(r"[()|\[\]]|\{[\w:-]*\}|<[\w-]*>|[{}<>]|[^\s()|\[\]{}<>]+")
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,62 +45,103 @@ Part = Word | Slot | Choice
 
 
 @dataclass(frozen=True, slots=True)
+class Source:
+    """Where a wording is written, and how."""
+
+    path: Path
+    line: int
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
 class Parts:
-    """Parts, one after the other."""
+    """Parts, one after the other.
+
+    Attributes:
+        source: where a whole wording is written; None for its inner parts, and for one that was
+            made.
+        states: how it is matched; made when it is first needed.
+    """
 
     parts: tuple[Part, ...]
+    source: Source | None = field(default=None, compare=False, repr=False)
+    states: list[_State] = field(default_factory=list, compare=False, repr=False)
 
 
-def parse_template(text: str, lists: Mapping[str, str]) -> Parts:
+@dataclass(frozen=True, slots=True)
+class _Text:
+    """A wording while it is read: its text, the lists it can use, and the lists that it stands in."""
+
+    text: str
+    lists: Mapping[str, str]
+    within: tuple[str, ...] = ()
+
+    def inner(self, name: str) -> _Text:
+        if name not in self.lists:
+            raise GrammarError(
+                f"There is no list <{name}> for {self.text!r}.{did_you_mean(name, self.lists)}"
+            )
+        if name in self.within:
+            raise GrammarError(f"The list <{name}> contains itself; write its words out.")
+        return _Text(self.lists[name], self.lists, (*self.within, name))
+
+
+def parse_template(text: str, lists: Mapping[str, str], source: Source | None = None) -> Parts:
     """Reads a wording.
 
     Raises:
         GrammarError: a bracket is open, or a list is unknown.
     """
-    symbols = _SYMBOL.findall(text)
-    parts, rest = _sequence(symbols, 0, text, lists)
-    if rest != len(symbols):
-        raise GrammarError(f"There is one closing bracket too many in {text!r}.")
-    return Parts(parts)
+    return Parts(_whole(_Text(text, lists)), source)
 
 
-def _sequence(
-    symbols: Sequence[str], at: int, text: str, lists: Mapping[str, str]
-) -> tuple[tuple[Part, ...], int]:
+def _whole(text: _Text) -> tuple[Part, ...]:
+    symbols = _SYMBOL.findall(text.text)
+    parts, rest = _sequence(symbols, 0, text)
+    if rest == len(symbols):
+        return parts
+    if symbols[rest] == "|":
+        raise GrammarError(f"The | in {text.text!r} stands in no brackets; write (this|that).")
+    raise GrammarError(f"There is one closing bracket too many in {text.text!r}; take it out.")
+
+
+def _sequence(symbols: Sequence[str], at: int, text: _Text) -> tuple[tuple[Part, ...], int]:
     parts: list[Part] = []
     while at < len(symbols) and symbols[at] not in (")", "]", "|"):
         symbol = symbols[at]
         at += 1
         if symbol in "([":
-            choice, at = _choice(symbols, at, symbol, text, lists)
+            choice, at = _choice(symbols, at, symbol, text)
             parts.append(choice)
+        elif symbol in "{}<>":
+            raise GrammarError(
+                f"The {symbol} in {text.text!r} is never closed or opened; write {{slot}} or <list>."
+            )
         elif symbol.startswith("{"):
             name, _, kind = symbol[1:-1].partition(":")
             parts.append(Slot(name, kind))
         elif symbol.startswith("<"):
-            if symbol[1:-1] not in lists:
-                raise GrammarError(f"There is no list {symbol} for {text!r}.")
-            parts.extend(parse_template(lists[symbol[1:-1]], lists).parts)
+            parts.extend(_whole(text.inner(symbol[1:-1])))
         else:
             parts.extend(Word(word) for word in phrase(symbol))
     return tuple(parts), at
 
 
-def _choice(
-    symbols: Sequence[str], at: int, opening: str, text: str, lists: Mapping[str, str]
-) -> tuple[Choice, int]:
+def _choice(symbols: Sequence[str], at: int, opening: str, text: _Text) -> tuple[Choice, int]:
     closing = ")" if opening == "(" else "]"
     options = []
     while True:
-        parts, at = _sequence(symbols, at, text, lists)
+        parts, at = _sequence(symbols, at, text)
         options.append(Parts(parts))
         if at >= len(symbols):
-            raise GrammarError(f"A bracket is never closed in {text!r}.")
+            raise GrammarError(f"A {opening} is never closed in {text.text!r}; add the {closing}.")
         at += 1
         if symbols[at - 1] == closing:
             break
         if symbols[at - 1] != "|":
-            raise GrammarError(f"A bracket is closed by the wrong one in {text!r}.")
+            raise GrammarError(
+                f"A {opening} is closed by {symbols[at - 1]} in {text.text!r}; write {closing}."
+            )
     if closing == "]":
         options.append(Parts(()))
     return Choice(tuple(options)), at
@@ -112,43 +154,84 @@ Bound = tuple[tuple[str, object], ...]
 class Fillers(Protocol):
     """What can stand in a slot at a position: (end, value)."""
 
-    def __call__(self, slot: Slot, at: int) -> Iterator[tuple[int, object]]:
+    def __call__(self, slot: Slot, at: int) -> Iterable[tuple[int, object]]:
         """The values that start at a position, with where they end."""
         ...
+
+
+@dataclass(slots=True)
+class _State:
+    """A place in a wording: what can come next, and where that leads.
+
+    Attributes:
+        words: by word, the place after it.
+        slots: the slots that can come next, each with the place after it.
+        final: the wording may end here.
+    """
+
+    words: dict[str, _State] = field(default_factory=dict)
+    slots: tuple[tuple[Slot, _State], ...] = ()
+    final: bool = False
 
 
 def match(
     template: Parts, tokens: Sequence[str], at: int, fillers: Fillers
 ) -> Iterator[tuple[int, Bound]]:
-    """Every way in which a wording matches tokens from a position: its end, and what fills its slots."""
-    yield from _match(template.parts, 0, tokens, at, fillers, ())
+    """Every way in which a wording matches tokens from a position: its end, and what fills its slots.
+
+    A wording is turned into states once, in which a word leads to one place at most: long lists of
+    alternatives cost a look-up, not a try each.
+    """
+    if not template.states:
+        template.states.append(_states(template.parts, _State(final=True)))
+    seen = set()
+    waiting: list[tuple[_State, int, Bound]] = [(template.states[0], at, ())]
+    size = len(tokens)
+    while waiting:
+        state, here, bound = waiting.pop()
+        if state.final:
+            key = (here, tuple((name, id(value)) for name, value in bound))
+            if key not in seen:
+                seen.add(key)
+                yield here, bound
+        for slot, following in state.slots:
+            for end, value in fillers(slot, here):
+                waiting.append((following, end, (*bound, (slot.name, value))))
+        if here < size:
+            after = state.words.get(tokens[here])
+            if after is not None:
+                waiting.append((after, here + 1, bound))
 
 
-def _match(
-    parts: tuple[Part, ...],
-    index: int,
-    tokens: Sequence[str],
-    at: int,
-    fillers: Fillers,
-    bound: Bound,
-) -> Iterator[tuple[int, Bound]]:
-    if index == len(parts):
-        yield at, bound
-        return
-    part = parts[index]
-    if isinstance(part, Word):
-        if at < len(tokens) and tokens[at] == part.text:
-            yield from _match(parts, index + 1, tokens, at + 1, fillers, bound)
-    elif isinstance(part, Slot):
-        for end, value in fillers(part, at):
-            yield from _match(parts, index + 1, tokens, end, fillers, (*bound, (part.name, value)))
-    else:
-        seen = set()
-        for option in part.options:
-            for end, inner in _match(option.parts, 0, tokens, at, fillers, bound):
-                if (end, inner) not in seen:
-                    seen.add((end, inner))
-                    yield from _match(parts, index + 1, tokens, end, fillers, inner)
+def _states(parts: Sequence[Part], following: _State) -> _State:
+    """The place in front of some parts, behind which comes `following`."""
+    for part in reversed(parts):
+        if isinstance(part, Word):
+            following = _State({part.text: following})
+        elif isinstance(part, Slot):
+            following = _State(slots=((part, following),))
+        else:
+            options = [_states(option.parts, following) for option in part.options]
+            following = _merged(options, {})
+    return following
+
+
+def _merged(states: Sequence[_State], known: dict[frozenset[int], _State]) -> _State:
+    """One place for several that a wording can be in at once."""
+    distinct = list({id(s): s for s in states}.values())
+    if len(distinct) == 1:
+        return distinct[0]
+    key = frozenset(map(id, distinct))
+    if key in known:
+        return known[key]
+    merged = known[key] = _State(final=any(s.final for s in distinct))
+    merged.slots = tuple(slot for s in distinct for slot in s.slots)
+    ways: dict[str, list[_State]] = {}
+    for state in distinct:
+        for word, after in state.words.items():
+            ways.setdefault(word, []).append(after)
+    merged.words = {word: _merged(afters, known) for word, afters in ways.items()}
+    return merged
 
 
 def first_words(template: Parts) -> frozenset[str] | None:
@@ -184,3 +267,13 @@ def vocabulary(template: Parts) -> Iterator[str]:
         elif isinstance(part, Choice):
             for option in part.options:
                 yield from vocabulary(option)
+
+
+def slots_in(template: Parts) -> Iterator[Slot]:
+    """Every slot of a wording."""
+    for part in template.parts:
+        if isinstance(part, Slot):
+            yield part
+        elif isinstance(part, Choice):
+            for option in part.options:
+                yield from slots_in(option)

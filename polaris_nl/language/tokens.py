@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
+from collections.abc import Iterable, Sequence
 from functools import cache
 from typing import Any
 
@@ -45,6 +46,23 @@ _SPELLINGS = {
     "colour": "color", "grey": "gray", "favourite": "favorite", "centre": "center", "okay": "ok",
     "til": "till", "'til": "till", "cos": "because", "gonna": "going", "wanna": "want", "lemme": "let",
 }  # fmt: skip
+_SUBJECTS = frozenset(
+    (
+        "it",
+        "that",
+        "this",
+        "there",
+        "here",
+        "what",
+        "where",
+        "who",
+        "how",
+        "she",
+        "he",
+        "everything",
+    )
+)
+"""Words after which `'s` is a verb, not a possessive."""
 BREAK, COMMA = ".", ","
 _BREAKS = {
     ".": BREAK,
@@ -94,6 +112,8 @@ def words(text: str) -> list[str]:
 def _normal(word: str, before: list[str]) -> str:
     if word in _BREAKS:
         return _BREAKS[word]
+    if word == "'s" and before and before[-1] in _SUBJECTS:
+        return "is"
     if word == "'":
         return "'s" if before and before[-1].endswith("s") else ""
     if word.isascii() and word.isdigit() and int(word) < len(_NUMBERS):
@@ -105,3 +125,21 @@ def _normal(word: str, before: list[str]) -> str:
 def phrase(text: str) -> tuple[str, ...]:
     """The words of a name or a wording, without marks."""
     return tuple(w for w in words(text.replace("_", " ")) if w not in (BREAK, COMMA))
+
+
+class PhraseSet:
+    """Phrases, for finding the longest that stands at a position."""
+
+    def __init__(self, phrases: Iterable[tuple[str, ...]]) -> None:
+        self._by_first: dict[str, list[tuple[str, ...]]] = {}
+        for words_of_it in sorted({p for p in phrases if p}, key=lambda p: (-len(p), p)):
+            self._by_first.setdefault(words_of_it[0], []).append(words_of_it)
+
+    def length_at(self, tokens: Sequence[str], at: int) -> int:
+        """The number of words of the longest phrase that stands at a position, or 0."""
+        if at >= len(tokens):
+            return 0
+        for found in self._by_first.get(tokens[at], ()):
+            if tuple(tokens[at : at + len(found)]) == found:
+                return len(found)
+        return 0

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from typing import NamedTuple
 
 from polaris_nl.model.domain import Domain, Operator, Predicate, effect_literals
 from polaris_nl.model.errors import DomainError, FileError, FormatError, did_you_mean
@@ -112,12 +113,23 @@ def parse_domain(text: str, path: Path | None = None) -> Domain:
     return domain
 
 
-def _comments(text: str) -> dict[int, tuple[str, str]]:
+class _Comment(NamedTuple):
+    """A comment that says something: its kind and text, and whether it has a line of its own."""
+
+    kind: str
+    text: str
+    alone: bool
+
+
+def _comments(text: str) -> dict[int, _Comment]:
     found = {}
     for number, line in enumerate(text.splitlines(), 1):
         match = _COMMENT.search(line)
         if match:
-            found[number] = ((match[1] or match[3]).upper(), (match[2] or "").strip())
+            alone = not line[: match.start()].strip()
+            found[number] = _Comment(
+                (match[1] or match[3]).upper(), (match[2] or "").strip(), alone
+            )
     return found
 
 
@@ -135,7 +147,7 @@ def _list(section: Group) -> tuple[Variable, ...]:
     return tuple(typed_list(Group(section.items[1:], section.line)))
 
 
-def _predicates(section: Group, comments: dict[int, tuple[str, str]]) -> list[Predicate]:
+def _predicates(section: Group, comments: dict[int, _Comment]) -> list[Predicate]:
     found = []
     for node in section.items[1:]:
         if not isinstance(node, Group) or not node.head:
@@ -147,22 +159,18 @@ def _predicates(section: Group, comments: dict[int, tuple[str, str]]) -> list[Pr
     return found
 
 
-def _hint(line: int, comments: dict[int, tuple[str, str]]) -> tuple[str, bool]:
-    """The phrases beside a definition or on the lines right above it."""
-    hint, internal = "", False
-    while line in comments or line - 1 in comments:
-        kind, text = comments.get(line) or comments[line - 1]
-        hint = hint or (text if kind == "NL" else "")
-        internal = internal or kind == "INTERNAL"
-        if line in comments:
-            break
-        line -= 1
-        if line - 1 not in comments:
-            break
-    return hint, internal
+def _hint(line: int, comments: dict[int, _Comment]) -> tuple[str, bool]:
+    """The phrases beside a definition, or on the lines right above it that hold nothing else."""
+    found = [comments[line]] if line in comments else []
+    above = line - 1
+    while above in comments and comments[above].alone:
+        found.append(comments[above])
+        above -= 1
+    hint = next((comment.text for comment in found if comment.kind == "NL"), "")
+    return hint, any(comment.kind == "INTERNAL" for comment in found)
 
 
-def _operator(section: Group, comments: dict[int, tuple[str, str]]) -> Operator:
+def _operator(section: Group, comments: dict[int, _Comment]) -> Operator:
     if len(section.items) < 2 or len(section.items) % 2:
         raise FormatError(
             "An operator is (:action NAME :parameters ... :precondition ... :effect ...).",
@@ -209,10 +217,10 @@ def _word(node: Node) -> str:
 
 
 def _mutexes(
-    comments: dict[int, tuple[str, str]], predicates: dict[str, Predicate]
+    comments: dict[int, _Comment], predicates: dict[str, Predicate]
 ) -> tuple[MutexGroup, ...]:
     groups = []
-    for line, (kind, text) in comments.items():
+    for line, (kind, text, _) in comments.items():
         if kind != "MUTEX":
             continue
         patterns = tuple(formula_of(node) for node in read_all(text, line))
@@ -227,12 +235,12 @@ def _mutexes(
 
 
 def _exogenous(
-    comments: dict[int, tuple[str, str]],
+    comments: dict[int, _Comment],
     predicates: dict[str, Predicate],
     operators: dict[str, Operator],
 ) -> frozenset[str]:
     found = set()
-    for line, (kind, text) in comments.items():
+    for line, (kind, text, _) in comments.items():
         for name in text.lower().split() if kind == "EXOGENOUS" else ():
             if name not in predicates:
                 raise FormatError(

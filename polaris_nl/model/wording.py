@@ -12,6 +12,7 @@ from typing import Protocol
 
 from polaris_nl.model.domain import Action
 from polaris_nl.model.formula import Formula, Literal
+from polaris_nl.model.text import listed
 from polaris_nl.model.world import World
 
 
@@ -30,8 +31,16 @@ class Wording(Protocol):
         """An imperative: "put the tray on the table", "tell the resident that lunch is ready"."""
         ...
 
+    def goals(self, goals: Sequence[Formula]) -> str:
+        """Imperatives in one: "put the cup and the plate in the sink"."""
+        ...
+
     def event(self, literal: Literal) -> str:
-        """A clause for after "once": "she acknowledges lunch", "the cup is on the rack"."""
+        """A clause for after "once": "lunch is acknowledged", "the cup is on the rack"."""
+        ...
+
+    def events(self, when: Sequence[Literal]) -> str:
+        """Clauses for after "once", in one: "the cup and the plate are on the rack"."""
         ...
 
     def action(self, action: Action) -> str:
@@ -62,9 +71,17 @@ class PlainWording:
         """The fact, to be made true."""
         return f"make sure that {self.fact(goal)}"
 
+    def goals(self, goals: Sequence[Formula]) -> str:
+        """One after the other."""
+        return listed([self.goal(goal) for goal in goals])
+
     def event(self, literal: Literal) -> str:
         """The same as the fact."""
         return self.fact(literal)
+
+    def events(self, when: Sequence[Literal]) -> str:
+        """One after the other."""
+        return listed([self.event(literal) for literal in when])
 
     def action(self, action: Action) -> str:
         """The author's phrase, or operator and arguments in their order."""

@@ -122,11 +122,11 @@ class World:
         return {kind: frozenset(members) for kind, members in found.items()}
 
     def is_kind(self, entity: str, kind: str) -> bool:
-        """Whether `(kind entity kind)` holds: by its kinds, its type, or its noun."""
+        """Whether `(kind entity kind)` holds: by its kinds, its type, its noun or its name."""
         if entity in self.kinds.get(kind, ()):
             return True
         known = self.entities.get(entity)
-        return known is not None and kind in (known.type, known.noun)
+        return known is not None and kind in (known.type, known.noun, known.name)
 
     def holds(self, atom: Literal, state: State) -> bool:
         """Whether a ground atom is true in a state of this world, `kind` included."""

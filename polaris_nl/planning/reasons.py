@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from polaris_nl.automaton.automaton import Automaton
-from polaris_nl.model.domain import Action, conjuncts
-from polaris_nl.model.evaluate import after, effects
-from polaris_nl.model.formula import Literal, bind
+from polaris_nl.model.domain import Action
+from polaris_nl.model.evaluate import after, applicable, effects
+from polaris_nl.model.formula import Literal
 from polaris_nl.model.state import State
 from polaris_nl.model.world import World
 from polaris_nl.planning.result import BranchingPlan, Segment
@@ -68,7 +68,9 @@ def _first_use(
     while True:
         for action in remaining:
             operator = world.domain.operators[action.operator]
-            if fact in conjuncts(bind(operator.precondition, operator.binding(action))):
+            if applicable(action, operator, state, world) and not applicable(
+                action, operator, state.change((fact,), ()), world
+            ):
                 return Reason(fact, action, segment.target)
             if fact.negation in effects(action, operator, state, world):
                 return None

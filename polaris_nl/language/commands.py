@@ -1,0 +1,117 @@
+"""Commands: "undo", "okay robot, please run it now", "no, undo that"; and what goes around them."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import cast
+
+from polaris_nl.language.common import Common
+from polaris_nl.language.interpretation import Command
+from polaris_nl.language.tokens import BREAK, COMMA
+
+MOST_AT_ONCE = 16
+"""Words up to which an utterance is looked at for several commands."""
+_REPLIES: tuple[Command, ...] = ("yes", "no")
+_JOINS = ("and", "then")
+_ALONE = (("what",), ("sorry",), ("right",))
+"""Commands only where nothing else is said: "then what" asks for something else."""
+
+
+@dataclass(frozen=True, slots=True)
+class Told:
+    """What an utterance commands.
+
+    Attributes:
+        commands: one, or several different ones that can't all be done at once.
+        agrees: it begins with a yes: "yes, run it".
+    """
+
+    commands: tuple[Command, ...]
+    agrees: bool = False
+
+
+class Softeners:
+    """What people say around a command or a question, where it changes nothing: "could you ... please"."""
+
+    def __init__(self, common: Common) -> None:
+        self._opening = frozenset(common.listed("opening"))
+        self._closing = frozenset(common.listed("closing"))
+        self._longest = max((len(p) for p in (*self._opening, *self._closing)), default=0)
+
+    def within(self, tokens: Sequence[str]) -> Iterator[tuple[str, ...]]:
+        """The tokens as they are, then without more and more of what is around them."""
+        waiting = deque([tuple(tokens)])
+        seen = set(waiting)
+        while waiting:
+            found = waiting.popleft()
+            yield found
+            for size in range(1, min(self._longest, len(found) - 1) + 1):
+                shorter = [found[size:]] if found[:size] in self._opening else []
+                if found[-size:] in self._closing:
+                    shorter.append(found[:-size])
+                for rest in shorter:
+                    if rest not in seen:
+                        seen.add(rest)
+                        waiting.append(rest)
+
+
+class Commands:
+    """Finds the commands of a grammar in utterances."""
+
+    def __init__(self, common: Common) -> None:
+        self._softeners = Softeners(common)
+        found: dict[tuple[str, ...], Command] = {}
+        for intent in common.of_kind("command"):
+            for words in intent.phrases:
+                found.setdefault(words, cast(Command, intent.name))
+        self._known: Mapping[tuple[str, ...], Command] = found
+        self._first = frozenset(words[0] for words in found)
+
+    def meant(self, tokens: Sequence[str]) -> Told | None:
+        """What the tokens command, or None where there is more in them than commands."""
+        plain = tuple(t for t in tokens if t not in (BREAK, COMMA))
+        one = self._one(plain)
+        if one is not None:
+            return Told((one,))
+        if len(plain) > MOST_AT_ONCE:
+            return None
+        several = self._several(plain)
+        return _together(several) if several else None
+
+    def _one(self, tokens: tuple[str, ...]) -> Command | None:
+        found = (
+            self._known.get(inner)
+            for inner in self._softeners.within(tokens)
+            if inner == tokens or inner not in _ALONE
+        )
+        return next((command for command in found if command is not None), None)
+
+    def _several(self, tokens: tuple[str, ...]) -> tuple[Command, ...]:
+        """The commands that all of the tokens consist of, the longest first at each place."""
+        failed: set[int] = set()
+
+        def after(at: int) -> tuple[Command, ...] | None:
+            if at == len(tokens):
+                return ()
+            for end in range(len(tokens), at, -1) if at not in failed else ():
+                command = self._one(tokens[at:end])
+                rest = after(end) if command is not None else None
+                if command is not None and rest is not None:
+                    return (command, *rest)
+            failed.add(at)
+            if tokens[at] in _JOINS and 0 < at < len(tokens) - 1:
+                return after(at + 1)
+            return None
+
+        return after(0) or ()
+
+
+def _together(commands: tuple[Command, ...]) -> Told:
+    """Several commands as one where they come to the same; a stop comes before all others."""
+    if "stop" in commands:
+        return Told(("stop",))
+    asked = tuple(dict.fromkeys(c for c in commands if c not in _REPLIES))
+    agrees = commands[0] == "yes"
+    return Told(asked, agrees) if asked else Told((commands[0],), agrees)

@@ -1,0 +1,417 @@
+"""Corrections of what was just done: "no, I meant the blue cup", "no, close it", "not the fridge, the sink"."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from polaris_nl.automaton.automaton import START, Automaton
+from polaris_nl.automaton.edits import (
+    Edit,
+    RemoveCheckpoint,
+    RenameCheckpoint,
+    SetConditional,
+    SetGoals,
+    apply_all,
+)
+from polaris_nl.language.changes import (
+    NO_STEPS,
+    NOTHING_CHANGES,
+    Changes,
+    MeantThen,
+    steps_there,
+)
+from polaris_nl.language.choosing import Choosing
+from polaris_nl.language.dialogue import Dialogue, Latest
+from polaris_nl.language.exchange import exchanged, used_in, without
+from polaris_nl.language.expansions import expansions
+from polaris_nl.language.generate import goals_in_words, steps_in_words
+from polaris_nl.language.interpretation import Interpretation
+from polaris_nl.language.mention import Mention
+from polaris_nl.language.patterns import Match, Patterns, strip
+from polaris_nl.language.queries import _condition
+from polaris_nl.language.references import References, meant
+from polaris_nl.language.rereading import Rereading
+from polaris_nl.language.resolve import Misfit, Unclear
+from polaris_nl.language.structure import Step
+from polaris_nl.language.tokens import BREAK, COMMA
+from polaris_nl.model.errors import EditError
+from polaris_nl.model.formula import Goal, Literal
+from polaris_nl.model.text import listed, sentence
+
+if TYPE_CHECKING:
+    from polaris_nl.language.understanding import Understanding
+
+_LEADS = {"correct-lead": 2, "correct-aside": 1, "correct-tail": 1, "correct-noise": 0}
+WHAT_INSTEAD = "I don't see what should be changed; say what you meant, or undo."
+_MORE = ("also", "too", "as well", "again")
+"""Words of a sentence that adds to what was said, however it starts."""
+_WAITED = ("until", "till", "for", "here", "there")
+"""Words behind "wait" that make it something to do."""
+_NEVER = ("do", "not")
+
+
+@dataclass(frozen=True, slots=True)
+class Core:
+    """An utterance without the words around a correction.
+
+    Attributes:
+        tokens: what is left, without marks at its ends.
+        strength: 2 behind "no" or "I meant", 1 behind "sorry" or "actually", else 0.
+    """
+
+    tokens: tuple[str, ...]
+    strength: int = 0
+
+    @property
+    def words(self) -> list[str]:
+        """The tokens without marks."""
+        return [t for t in self.tokens if t not in (COMMA, BREAK)]
+
+
+class Corrections:
+    """Reads corrections for one `Understanding`."""
+
+    def __init__(self, language: Understanding, changes: Changes, references: References) -> None:
+        self._language = language
+        self._changes = changes
+        self._references = references
+        common = language.grammar.common
+        intents = common.of_kind("correction")
+        self._around = {
+            intent.name: sorted(
+                {
+                    tuple(str(w) for w in said)
+                    for wording in intent.wordings
+                    for said in expansions(wording)
+                },
+                key=len,
+                reverse=True,
+            )
+            for intent in intents
+            if intent.name in _LEADS
+        }
+        rest = [intent for intent in intents if intent.name not in _LEADS]
+        self._patterns = Patterns(rest, references, common.numbers)
+        self._choosing = Choosing(language)
+        self._again = Rereading(language, references)
+        # "Go" is a filler in "go and open it", and the verb in "no, go to the kitchen".
+        self._fillers = [f for f in common.fillers if len(f) > 1 or f[0] not in references.verbs]
+
+    def core(self, tokens: Sequence[str]) -> Core:
+        """An utterance without "no, I meant" in front of it, "instead" behind it, and the like."""
+        found, strength = _trimmed(tokens), 0
+        changed = True
+        while changed:
+            changed = False
+            for name, phrases in self._around.items():
+                kept = _without(found, phrases, name == "correct-tail")
+                if kept is not None:
+                    found, strength, changed = _trimmed(kept), max(strength, _LEADS[name]), True
+            if strength or not changed:
+                kept = strip(found, self._fillers)
+                changed = changed or kept != found
+                found = kept
+        return Core(tuple(found), strength)
+
+    def corrected(
+        self, utterance: str, core: Core, program: Automaton, dialogue: Dialogue
+    ) -> MeantThen | None:
+        """A correction of what was just done, or None where the utterance is none."""
+        touched = [c for c in dialogue.touched if c in program.checkpoints and c != START]
+        if len(program.checkpoints) == 1 and dialogue.latest is None:
+            return None
+        if any(w in core.tokens for w in _MORE):
+            return None
+        try:
+            return self._corrected(utterance, core, touched, program, dialogue)
+        except Unclear as unclear:
+            return self._language.asked(utterance, unclear, dialogue)
+        except EditError as error:
+            return self._language.refused(utterance, sentence(str(error))), dialogue
+
+    def _corrected(
+        self,
+        utterance: str,
+        core: Core,
+        touched: Sequence[str],
+        program: Automaton,
+        dialogue: Dialogue,
+    ) -> MeantThen | None:
+        words = core.words
+        if core.strength and (again := self._again.edited(utterance, words, program, dialogue)):
+            return again
+        mentions = self._language.mentions(words)
+        question: Unclear | None = None
+        for match in self._patterns.matches(words, mentions, program, touched):
+            if match.intent.startswith("correct-") and not core.strength and "y" not in match.slots:
+                continue
+            if (
+                match.intent == "leave-out"
+            ):  # "Remove home" means the step of that name, if there is one.
+                edited = self._language.edited(utterance, core.tokens, program, dialogue)
+                if edited is not None:
+                    return edited
+            try:
+                found = self._matched(match, core, touched, program, dialogue)
+            except Misfit:
+                continue
+            except Unclear as unclear:
+                question = question or unclear
+                continue
+            if found is not None:
+                return self._applied(utterance, *found, program, dialogue, touched)
+        if question is not None:
+            raise question
+        if not core.strength:
+            return None
+        edited = self._language.edited(utterance, core.tokens, program, dialogue)
+        if edited is not None:
+            return edited
+        condition = self._conditional(core, touched, program, dialogue)
+        if condition is not None:
+            return self._applied(utterance, *condition, program, dialogue, touched)
+        return self._sentence(utterance, core, touched, program, dialogue)
+
+    def _matched(
+        self,
+        match: Match,
+        core: Core,
+        touched: Sequence[str],
+        program: Automaton,
+        dialogue: Dialogue,
+    ) -> tuple[list[Edit], str] | None:
+        if match.intent == "correct-number":
+            return self._again.counted(match, program, dialogue)
+        if match.intent == "correct-other":
+            return self._choosing.another(match.slots.get("y"), touched, program, dialogue)
+        where = list(touched)
+        rest = [c for c in reversed(list(program.checkpoints)) if c != START and c not in touched]
+        if "k" in match.references:
+            where = [meant(match.references["k"], match.tokens, program, dialogue.scope)]
+            rest = []
+        if match.intent == "leave-out":
+            return self._left_out(match, where, rest, program, dialogue)
+        new, old = match.slots["x"], match.slots.get("y")
+        assert isinstance(new, Mention)
+        entities, everything = self._choosing.entities(new, old, where, program, dialogue)
+        if old is None and set(entities) <= set(used_in(program, where)):
+            return [], NOTHING_CHANGES
+        for number, group in enumerate(self._groups(where, rest, old)):
+            replaced = self._choosing.replaceable(
+                entities[0], old, group, program, convert=number == 0
+            )
+            if replaced is None:
+                continue
+            if entities == (replaced,) and everything is None:
+                return [], NOTHING_CHANGES
+            domain, names = self._language.world, self._language.names
+            edits = list(exchanged(program, group, replaced, entities, everything, domain, names))
+            if edits:
+                wording = self._language.wording
+                put = listed([wording.entity(e) for e in entities])
+                return edits, f"I've put {put} in place of {wording.entity(replaced)}"
+        return None
+
+    def _groups(
+        self, touched: Sequence[str], rest: Sequence[str], old: object
+    ) -> Iterator[Sequence[str]]:
+        """Where to look for what was wrong: in what was just done, then in the whole program."""
+        yield touched
+        if old is not None:
+            yield rest
+        else:
+            yield from ([c] for c in rest)
+
+    def _left_out(
+        self,
+        match: Match,
+        where: Sequence[str],
+        rest: Sequence[str],
+        program: Automaton,
+        dialogue: Dialogue,
+    ) -> tuple[list[Edit], str] | None:
+        mention = match.slots["x"]
+        assert isinstance(mention, Mention)
+        if mention.pronoun:
+            return None
+        named = {c.entity for part in (mention.parts or (mention,)) for c in part.candidates}
+        for checkpoint in [*reversed(where), *rest]:
+            goals = program.checkpoints[checkpoint].goals
+            used = {a for g in goals if isinstance(g, Literal) for a in g.args[:1]}
+            about = [e for e in used_in(program, [checkpoint]) if e in named]
+            about = [e for e in about if e in used] or about
+            if not about:
+                continue
+            best = [about[0]] if not (mention.parts or mention.plural) else about
+            kept = without(goals, best)
+            if kept == goals:
+                continue
+            words = listed([self._language.wording.entity(e) for e in best])
+            name = program.checkpoints[checkpoint].name
+            if not kept:
+                return [RemoveCheckpoint(checkpoint)], f"{name} is gone"
+            return [SetGoals(checkpoint, kept)], f"{name} is without {words} now"
+        return None
+
+    def excuse(self, core: Core, program: Automaton, dialogue: Dialogue) -> str:
+        """Why something can't be put in another's place, or ""."""
+        words, wording = core.words, self._language.wording
+        for match in self._patterns.matches(words, self._language.mentions(words), program, ()):
+            old = match.slots.get(
+                "y", match.slots.get("x") if match.intent == "leave-out" else None
+            )
+            if not isinstance(old, Mention) or not old.candidates:
+                continue
+            thing = wording.entity(min(old.candidates, key=lambda c: c.rank).entity)
+            if len(program.checkpoints) == 1:
+                return NO_STEPS
+            return f"{sentence(f'{thing} is in no step')} {steps_there(program)}"
+        if core.strength == 2 and len(program.checkpoints) > 1:
+            return f"{WHAT_INSTEAD} {self._language.examples()}"
+        return ""
+
+    # Conditions, sentences
+
+    def _conditional(
+        self, core: Core, touched: Sequence[str], program: Automaton, dialogue: Dialogue
+    ) -> tuple[list[Edit], str] | None:
+        """Another condition: "no, if he acknowledges it"."""
+        words = core.words
+        when = _condition(self._language, words, (0, len(words)), dialogue.scope, introduced=True)
+        if not when or not touched:
+            return None
+        way = [touched[-1], *(t.source for t in reversed(program.path(touched[-1])))]
+        arrows = [t for c in (*reversed(touched), *way) if (t := program.incoming(c)) is not None]
+        about = {a for x in when for a in x.args}
+        close = [t for t in arrows if t.when and about & {a for x in t.when for a in x.args}]
+        arrow = next(iter(close or [t for t in arrows if t.when] or arrows), None)
+        if arrow is None:
+            return None
+        for beside in program.outgoing(arrow.source):
+            if beside.id != arrow.id and beside.conditional == set(when):
+                name = program.checkpoints[beside.target].name
+                raise EditError(
+                    f"{name} is what happens then already; change or remove {name} first."
+                )
+        goals = program.checkpoints[arrow.target].goals
+        if arrow.conditional == set(when):
+            return [], NOTHING_CHANGES
+        names = self._language.names.renamed(program, arrow.target, goals, when)
+        say = steps_in_words([Step(goals, when, "condition")], self._language.wording)
+        return [SetConditional(arrow.id, when), *names], say
+
+    def _sentence(
+        self,
+        utterance: str,
+        core: Core,
+        touched: Sequence[str],
+        program: Automaton,
+        dialogue: Dialogue,
+    ) -> MeantThen | None:
+        """Another step in the place of the latest: "no, close it"."""
+        replaces = touched and not dialogue.missed
+        steps = self._changes.steps(core.tokens, dialogue) if replaces else []
+        if not steps:
+            return None
+        step = steps[0]
+        if core.strength < 2 and not _alike(step.goals, touched, program):
+            return None
+        if core.tokens[:2] == _NEVER:
+            left = _negated(step.goals, touched, program)
+            if left is not None:
+                return self._applied(utterance, *left, program, dialogue, touched)
+        if len(steps) > 1 or step.role == "else":
+            return self._again.said(utterance, core.tokens, program, dialogue)
+        target = next(
+            (c for c in reversed(touched) if _alike(step.goals, [c], program)), touched[-1]
+        )
+        incoming = program.incoming(target)
+        if incoming is None or not step.goals:
+            return None
+        when = step.when or incoming.when
+        edits: list[Edit] = []
+        if set(program.checkpoints[target].goals) != set(step.goals):
+            edits.append(SetGoals(target, step.goals))
+        if incoming.conditional != set(when):
+            edits.append(SetConditional(incoming.id, when))
+        edits += self._language.names.renamed(program, target, step.goals, when)
+        say = (
+            steps_in_words([step], self._language.wording)
+            if step.when
+            else (f"{goals_in_words(step.goals, self._language.wording)} instead")
+        )
+        if not any(not isinstance(e, RenameCheckpoint) for e in edits):
+            edits, say = [], NOTHING_CHANGES
+        return self._applied(utterance, edits, say, program, dialogue, touched)
+
+    def _applied(
+        self,
+        utterance: str,
+        edits: Sequence[Edit],
+        say: str,
+        program: Automaton,
+        dialogue: Dialogue,
+        touched: Sequence[str],
+    ) -> MeantThen:
+        if not edits:
+            return Interpretation(utterance, "answer", say), dialogue
+        changed = apply_all(program, edits)
+        if changed == program:
+            return Interpretation(utterance, "answer", NOTHING_CHANGES), dialogue
+        corrected = {e.checkpoint for e in edits if isinstance(e, SetGoals)}
+        known = [a for c in corrected for a in used_in(changed, [c])]
+        entities = self._language.world.entities
+        scope = dialogue.scope
+        for name in (k for k in reversed(known) if k in entities and k not in scope.referents[-1:]):
+            scope = scope.after((name,)) if name not in used_in(program, corrected) else scope
+        kept = tuple(c for c in touched if c in changed.checkpoints) or tuple(corrected)
+        latest = Latest((), program, changed, replace(dialogue, latest=None), "correct")
+        after = replace(dialogue, scope=scope, touched=kept, latest=latest)
+        return Interpretation(utterance, "applied", sentence(say), tuple(edits)), after
+
+
+def _trimmed(tokens: Sequence[str]) -> list[str]:
+    found = list(tokens)
+    while found and found[0] in (COMMA, BREAK):
+        found.pop(0)
+    while found and found[-1] in (COMMA, BREAK):
+        found.pop()
+    return found
+
+
+def _without(
+    tokens: Sequence[str], phrases: Sequence[tuple[str, ...]], behind: bool
+) -> list[str] | None:
+    """Tokens without the longest of some phrases at an end, or None; never nothing at all."""
+    for words in phrases:
+        size = len(words)
+        end = tuple(tokens[-size:]) if behind else tuple(tokens[:size])
+        if size and end == words:
+            if len(tokens) <= size or (not behind and tokens[size] in _WAITED):
+                return None
+            return list(tokens[:-size] if behind else tokens[size:])
+    return None
+
+
+def _alike(goals: Sequence[Goal], where: Sequence[str], program: Automaton) -> bool:
+    predicates = {g.predicate for g in goals if isinstance(g, Literal)}
+    there = (g for c in where for g in program.checkpoints[c].goals)
+    return any(isinstance(g, Literal) and g.predicate in predicates for g in there)
+
+
+def _negated(
+    goals: Sequence[Goal], touched: Sequence[str], program: Automaton
+) -> tuple[list[Edit], str] | None:
+    """Goals that were asked for are taken back: "no, don't open the drawer"."""
+    wrong = {g.negation for g in goals if isinstance(g, Literal)}
+    for checkpoint in reversed(touched):
+        there = program.checkpoints[checkpoint].goals
+        kept = tuple(g for g in there if g not in wrong)
+        name = program.checkpoints[checkpoint].name
+        if kept and kept != there:
+            return [SetGoals(checkpoint, kept)], f"{name} is without that now"
+        if kept != there:
+            return [RemoveCheckpoint(checkpoint)], f"{name} is gone"
+    return None
