@@ -6,10 +6,16 @@ import itertools
 import platform
 import sys
 
-from bench import command, language, planning, speech
+from bench import command, language, planning, speech, tui
 from bench.table import show
 
-PARTS = {"command": command, "language": language, "speech": speech, "planning": planning}
+PARTS = {
+    "command": command,
+    "language": language,
+    "speech": speech,
+    "planning": planning,
+    "tui": tui,
+}
 
 
 def main() -> None:

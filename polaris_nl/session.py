@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from polaris_nl.answers import STILL_PLANNING, answer_query, change_in_words, run_in_words
+from polaris_nl.answers.about_goals import possible_in_words, problem_of, with_goals
 from polaris_nl.automaton.automaton import Automaton
 from polaris_nl.automaton.edit_json import edit_json
 from polaris_nl.automaton.edits import Edit, ReplaceProgram
@@ -129,6 +130,8 @@ class Session:
         self._dialogue = dialogue
         failure, confirmed = "", False
         was_echoed, self._run_echoed = self._run_echoed, False
+        if was_echoed and interpretation.command == "run" and interpretation.agrees:
+            interpretation = replace(interpretation, command="yes")  # "Yes, go ahead."
         before = self._publisher.snapshot
         if interpretation.edits:
             failure = self._do(interpretation.edits, interpretation.say)
@@ -269,6 +272,8 @@ class Session:
         if interpretation.query is not None:
             if interpretation.say:
                 return interpretation.say
+            if interpretation.query.kind in ("able", "why-not"):
+                return self._possible(interpretation.query, after)
             back = self.understanding.read_back(after.automaton)
             return answer_query(
                 interpretation.query, after.automaton, after.plan, self.world, self.wording, back
@@ -302,6 +307,14 @@ class Session:
                 interpretation.say, before.plan, after.plan, pending, after.failure
             )
         return interpretation.say
+
+    def _possible(self, query: Query, now: Snapshot) -> str:
+        """Whether goals could be reached after all else, or why not; tried without changing anything."""
+        if now.plan is not None and (found := problem_of(query.goals, now.automaton, now.plan)):
+            return found
+        tried, asked = with_goals(query.goals, now.automaton, now.plan)
+        plan = self.planner.compile(tried)
+        return possible_in_words(query, tried, asked, plan, self.wording)
 
     # Changes
 

@@ -3,50 +3,75 @@
 from __future__ import annotations
 
 from argparse import Namespace
+from collections.abc import Iterable
+from dataclasses import dataclass
 from pathlib import Path
 
 from polaris_nl.automaton.program import read_program
 from polaris_nl.automaton.validation import validate
-from polaris_nl.commands.common import complain, print_json, print_text, world_for
-from polaris_nl.language.grammar import SCHEMA as GRAMMAR
-from polaris_nl.language.grammar import load_grammar, read_common, read_grammar
-from polaris_nl.language.understanding import Understanding
-from polaris_nl.model.data import data_folder, shipped_domains
-from polaris_nl.model.errors import FileError, FormatError, PolarisError
+from polaris_nl.commands.common import complain, print_json, print_text, shown_path, world_for
+from polaris_nl.language.grammar_check import SCHEMAS, Findings, check_domain, check_grammar_file
+from polaris_nl.language.intents import INTENTS
+from polaris_nl.model.errors import FileError, FormatError, GrammarError, PolarisError
 from polaris_nl.model.pddl import read_domain
 from polaris_nl.model.world_file import read_world
-from polaris_nl.model.yaml_lines import read_yaml
+from polaris_nl.model.yaml_lines import Lined, read_yaml
+
+
+@dataclass(frozen=True)
+class _Checked:
+    """What a check of one file came to: what it is, and sentences about it."""
+
+    what: str
+    faults: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
 
 
 def run(arguments: Namespace) -> int:
-    """Checks each file; 1 where any has a fault."""
+    """Checks each file; 1 where any has a fault. Warnings leave the code alone."""
     code = 0
+    warned: set[str] = set()
     for path in arguments.files:
         try:
-            what, faults = _checked(path)
+            found = _checked(path)
         except PolarisError as error:
-            what, faults = "", [str(error)]
-        code = code or int(bool(faults))
+            found = _Checked("", (str(error),))
+        code = code or int(bool(found.faults))
         if arguments.json:
-            print_json(
-                {"file": str(path), "kind": what or None, "ok": not faults, "faults": faults}
-            )
-            continue
-        for fault in faults:
-            complain(fault if str(path) in fault else f"{path}: {fault}")
-        if not faults:
-            print_text(f"{path}: {what}, all right.")
+            print_json(_as_json(path, found))
+        else:
+            _print(path, found, warned)
     return code
 
 
-def _checked(path: Path) -> tuple[str, list[str]]:
+def _as_json(path: Path, found: _Checked) -> dict[str, object]:
+    return {
+        "file": str(path),
+        "kind": found.what or None,
+        "ok": not found.faults,
+        "faults": list(found.faults),
+        "warnings": list(found.warnings),
+    }
+
+
+def _print(path: Path, found: _Checked, warned: set[str]) -> None:
+    for fault in found.faults:
+        complain(fault if str(path) in fault else f"{path}: {fault}")
+    for warning in found.warnings:
+        if warning not in warned:
+            complain(f"warning: {warning}")
+            warned.add(warning)
+    if not found.faults:
+        print_text(f"{path}: {found.what}, all right.")
+
+
+def _checked(path: Path) -> _Checked:
     if path.suffix == ".json":
         program = read_program(path)
         faults = validate(program.automaton, world_for(None, program, path))
-        return "a program", [fault.text for fault in faults]
+        return _Checked("a program", tuple(fault.text for fault in faults))
     if path.suffix == ".pddl":
-        load_grammar(read_domain(path))
-        return "a domain", []
+        return _of("a domain", check_domain(read_domain(path)))
     if path.suffix in (".yaml", ".yml"):
         return _yaml(path)
     raise FileError(
@@ -54,27 +79,34 @@ def _checked(path: Path) -> tuple[str, list[str]]:
     )
 
 
-def _yaml(path: Path) -> tuple[str, list[str]]:
+def _yaml(path: Path) -> _Checked:
+    if _is_grammar(path):
+        found = check_grammar_file(path)
+        return _of(found.what, found)
+    return _of("a world", check_domain(read_world(path).domain))
+
+
+def _is_grammar(path: Path) -> bool:
+    """Whether a file calls itself a grammar, or, without a schema, has the fields of one."""
     try:
         root, _ = read_yaml(path)
     except FormatError as error:
         raise FormatError(error.reason, error.path or path, error.line) from error
-    schema = root.value.get("schema") if isinstance(root.value, dict) else None
-    if schema is None or schema.value != GRAMMAR:
-        Understanding(read_world(path))
-        return "a world", []
-    folder = (
-        path.parent if (path.parent / "common.yaml").is_file() else data_folder("grammars") / "en"
+    fields = root.value if isinstance(root.value, dict) else {}
+    schema = fields.get("schema", Lined("", 1)).value
+    names = [known.partition("/")[0] for known in SCHEMAS]
+    if str(schema).partition("/")[0] in names:
+        return True
+    return not schema and not {"entities", "domain"} & fields.keys() and _grammar_fields(fields)
+
+
+def _grammar_fields(fields: Iterable[str]) -> bool:
+    return bool({"predicates", "operators", "wordings", "lists", "uses", INTENTS} & set(fields))
+
+
+def _of(what: str, found: Findings) -> _Checked:
+    warnings = (
+        GrammarError(w.reason, Path(shown_path(w.path.resolve())) if w.path else None, w.line)
+        for w in found.warnings
     )
-    common = read_common(folder / "common.yaml")
-    if path.name == "common.yaml":
-        return "the shared grammar", []
-    domains = shipped_domains()
-    domain = domains.get(path.stem) or next(iter(path.parent.glob("*.pddl")), None)
-    if domain is None:
-        # A grammar that others use is checked with every domain, by the files that use it.
-        for known in domains.values():
-            read_grammar(path, read_domain(known), common, folder)
-        return "a shared grammar", []
-    read_grammar(path, read_domain(domain), common, folder)
-    return "a grammar", []
+    return _Checked(what, tuple(map(str, found.errors)), tuple(map(str, warnings)))

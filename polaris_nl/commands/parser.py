@@ -85,6 +85,9 @@ def _authoring(adder: _Adder) -> None:
     say.add_argument(
         "utterance", help='what to say, in quotes; "-" reads it from the standard input'
     )
+    say.add_argument(
+        "--explain", action="store_true", help="show the readings, and why the first was taken"
+    )
     _program_option(say)
     _world(say)
     dialogue = adder.add(

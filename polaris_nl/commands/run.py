@@ -9,7 +9,6 @@ from argparse import Namespace
 from collections.abc import Callable, Iterable
 
 from polaris_nl.automaton.automaton import Automaton
-from polaris_nl.automaton.edits import AddCheckpoint
 from polaris_nl.commands.common import (
     complain,
     opened,
@@ -154,6 +153,7 @@ def command_in(
         return HumanCommand("pause")
     if meant.command == "resume":
         return HumanCommand("resume")
-    told, _ = understanding.interpret(f"wait until {line}", automaton)
-    literals = [x for e in told.edits if isinstance(e, AddCheckpoint) for x in e.transition.when]
-    return HumanCommand("happened", tuple(literals)) if literals else None
+    # Facts are read as conditionals are: then "she acknowledges" means what the program waits for.
+    asked, _ = understanding.interpret(f"what will you do if {line}", automaton)
+    when = asked.query.when if asked.query is not None else ()
+    return HumanCommand("happened", when) if when else None

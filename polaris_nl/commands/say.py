@@ -17,7 +17,15 @@ def run(arguments: Namespace) -> int:
         utterance = sys.stdin.read(LONGEST + 1)
     with session_of(arguments) as session:
         answer = session.say(utterance)
-        show(answer, arguments.json and answer_json(answer, session.program))
+        value = answer_json(answer, session.program) if arguments.json else None
+        if value is not None and arguments.explain:
+            value["readings"] = [
+                {"text": r.text, "cost": round(-r.score, 2), "parts": list(r.why)}
+                for r in answer.interpretation.readings
+            ]
+        show(answer, value)
+        if arguments.explain and not arguments.json:
+            explain(answer)
     if answer.failure:
         complain(answer.failure)
     return 1 if answer.failure or answer.interpretation.outcome == "refused" else 0
@@ -31,3 +39,14 @@ def show(answer: Answer, value: object) -> None:
         complain(answer.say)
     else:
         print_text(answer.say)
+
+
+def explain(answer: Answer) -> None:
+    """Prints the readings that were found, the one that won first, and what each takes the words for."""
+    readings = answer.interpretation.readings
+    if not readings:
+        print_text("It was taken for a command, a question or an edit, or for nothing that I know.")
+    for number, reading in enumerate(readings):
+        lead = "Taken" if number == 0 else "Not taken"
+        print_text(f"{lead}, at a cost of {-reading.score:.2f}: {reading.text}")
+        print_text("   " + " | ".join(reading.why))

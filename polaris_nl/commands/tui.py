@@ -15,7 +15,7 @@ def run(arguments: Namespace) -> int:
         raise UsageError(
             "The terminal application prints no JSON; use dialogue --json for other programs."
         )
-    if not (sys.stdin.isatty() and sys.stdout.isatty()):
+    if not all(stream.isatty() for stream in (sys.stdin, sys.stdout, sys.stderr)):
         raise UsageError(
             "The terminal application needs a terminal; elsewhere use: polaris-nl dialogue"
         )
@@ -24,5 +24,5 @@ def run(arguments: Namespace) -> int:
     from polaris_tui.app import PolarisApp
 
     with session_of(arguments) as session:
-        code = PolarisApp(session).run()
+        code = PolarisApp(session).run(mouse=False)  # the terminal keeps its own way to copy
     return int(code or 0)

@@ -25,7 +25,7 @@ def branches_in_words(
         said.append(segment_in_words(segment, wording, lead))
         ways = _ways(automaton, plan, segment.target)
         several = len(ways) > 1
-        waiting.extend((way, _way(way, wording, several)) for way in reversed(ways))
+        waiting.extend((way, _way(way, wording, several) or "then ") for way in reversed(ways))
     return said
 
 
@@ -38,7 +38,7 @@ def _ways(automaton: Automaton, plan: BranchingPlan, checkpoint: str) -> list[Se
 
 def _way(segment: Segment, wording: Wording, several: bool) -> str:
     if segment.when:
-        return f"once {listed([wording.event(x) for x in segment.when])}, "
+        return f"once {wording.events(segment.when)}, "
     return "otherwise " if several else ""
 
 

@@ -3,10 +3,10 @@
 A sequence goes straight down and only branches are indented, so that a long program fits 80 columns:
 
     ○ start
-    ● alerted: tell the resident of lunchtime  ✓ 3 actions
-    ├─ ◇ once lunchtime is acknowledged
+    ● alerted: tell the resident that lunch is ready  ✓ 3 actions
+    ├─ ◇ once lunch is acknowledged
     │  ● home: go home  ✓ 2 actions
-    └─ ◇ once lunchtime is dismissed
+    └─ ◇ once lunch is dismissed
        ● cancelled: go home  ✗ no plan
 """
 
@@ -15,7 +15,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from polaris_nl.automaton.automaton import START, Automaton, Checkpoint, Transition
-from polaris_nl.model.text import listed
 from polaris_nl.model.wording import Wording
 from polaris_nl.planning.result import BranchingPlan, Segment
 from polaris_nl.render.glyphs import Glyphs
@@ -109,8 +108,7 @@ class _Drawer:
         branches = len(first) > len(rest) or first != rest
         if not transition.when and not branches:
             return
-        events = listed([self._wording.event(x) for x in transition.when])
-        text = f"once {events}" if transition.when else "otherwise"
+        text = f"once {self._wording.events(transition.when)}" if transition.when else "otherwise"
         lead = f"{first}{self._glyphs.wait} "
         yield from wrapped(text, self._width, lead, rest + "  ", checkpoint=transition.target)
 
@@ -154,7 +152,7 @@ class _Drawer:
     def _goals(self, checkpoint: Checkpoint) -> str:
         if checkpoint.action is not None:
             return self._wording.action(checkpoint.action)
-        return listed([self._wording.goal(goal) for goal in checkpoint.goals]) or "no goal"
+        return self._wording.goals(checkpoint.goals) or "no goal"
 
     def _loose(self, seen: set[str]) -> Iterator[Row]:
         """Checkpoints that nothing leads to; a program that is being edited may have some."""
