@@ -6,7 +6,7 @@ LOCK := requirements.lock
 STAMP := $(VENV)/.installed
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test bench lint format lock clean models
+.PHONY: help demo test bench score-language lint format lock clean models
 
 help: ## show this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 12
@@ -19,6 +19,9 @@ test: $(STAMP) models lint ## everything that CI checks
 
 bench: $(STAMP) models ## the speed table, beside the plain way
 	@$(BIN)/python -m bench
+
+score-language: $(STAMP) ## how much of what people say is understood, where the corpora are there
+	@$(BIN)/python -m bench.score_language
 
 lint: $(STAMP) ## style, types and import rules
 	$(BIN)/ruff check .
