@@ -11,7 +11,7 @@ from pathlib import Path
 from polaris_nl.language.expansions import expansions
 from polaris_nl.language.grammar_file import GrammarFile, Phrase
 from polaris_nl.language.intents import INTENTS, Intent, Kind, read_intent
-from polaris_nl.language.template import Parts, parse_template, vocabulary
+from polaris_nl.language.template import Lists, Parts, parse_template, vocabulary
 from polaris_nl.language.tokens import phrase
 from polaris_nl.model.errors import GrammarError, did_you_mean
 from polaris_nl.model.yaml_lines import Lined
@@ -68,7 +68,7 @@ class Common:
         language: the folder's name.
     """
 
-    lists: Mapping[str, str] = field(default_factory=dict)
+    lists: Lists = field(default_factory=Lists)
     intents: tuple[Intent, ...] = ()
     fillers: tuple[Phrase, ...] = ()
     assure: tuple[Phrase, ...] = ()
@@ -153,7 +153,7 @@ def read_common(path: Path, faults: list[GrammarError] | None = None) -> Common:
     file = GrammarFile(path, faults)
     fields = file.root(SCHEMA, "A grammar", _FIELDS)
     file.irregular = file.texts(fields.get("irregular"), "irregular")
-    lists = file.lists(fields.get("lists"), {})
+    lists = file.lists(fields.get("lists"))
 
     def phrases(key: str) -> tuple[Phrase, ...]:
         return file.phrases(fields.get(key), key, lists)
@@ -208,7 +208,7 @@ def read_common(path: Path, faults: list[GrammarError] | None = None) -> Common:
 def _intents(
     file: GrammarFile,
     value: Lined | None,
-    lists: Mapping[str, str],
+    lists: Lists,
     faults: list[GrammarError] | None,
 ) -> tuple[Intent, ...]:
     found = []

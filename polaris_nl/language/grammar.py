@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -11,6 +11,7 @@ from polaris_nl.language.common import SCHEMA, Common, read_common
 from polaris_nl.language.grammar_file import GrammarFile
 from polaris_nl.language.plain_phrases import hint_line, plain_action, plain_entry
 from polaris_nl.language.predicate_phrases import Phrases, check_text, read_phrases
+from polaris_nl.language.template import Lists
 from polaris_nl.model.data import data_folder
 from polaris_nl.model.domain import Domain, Operator
 from polaris_nl.model.errors import GrammarError, did_you_mean
@@ -88,7 +89,7 @@ def read_grammar(
     """
     reader = _Reader((domain,), common, faults)
     reader.read(path)
-    plain = plain_grammar(domain, common)
+    plain = plain_grammar(domain, common, reader.predicates)
     return Grammar(
         common,
         {**plain.predicates, **reader.predicates},
@@ -97,11 +98,19 @@ def read_grammar(
     )
 
 
-def plain_grammar(domain: Domain, common: Common) -> Grammar:
-    """The grammar of a domain that no file speaks of: from its names and `; NL:` comments."""
+def plain_grammar(domain: Domain, common: Common, known: Collection[str] = ()) -> Grammar:
+    """The grammar of what no file speaks of: from names and `; NL:` comments.
+
+    Args:
+        domain: the domain.
+        common: what is shared.
+        known: predicates that a file speaks of.
+    """
     file = GrammarFile(domain.path or Path(domain.name), irregular=common.irregular)
     predicates: dict[str, Phrases] = {}
     for predicate in domain.predicates.values():
+        if predicate.name in known:
+            continue
         line = hint_line(domain, predicate.hint)
         fields = {
             key: Lined(said if isinstance(said, str) else [Lined(s, line) for s in said], line)
@@ -175,7 +184,7 @@ class _Reader:
             self.read(path, shared=True)
 
     def _read_predicate(
-        self, file: GrammarFile, name: str, value: Lined, lists: Mapping[str, str], shared: bool
+        self, file: GrammarFile, name: str, value: Lined, lists: Lists, shared: bool
     ) -> None:
         domain = next((d for d in self._domains if name in d.predicates), None)
         if domain is not None:

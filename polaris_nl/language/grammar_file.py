@@ -8,6 +8,8 @@ from pathlib import Path
 
 from polaris_nl.language.expansions import expansion_count, expansions
 from polaris_nl.language.template import (
+    NO_LISTS,
+    Lists,
     Parts,
     Slot,
     Source,
@@ -131,7 +133,7 @@ class GrammarFile:
                 found[key] = int(item.number(key))
         return found
 
-    def lists(self, value: Lined | None, known: Mapping[str, str]) -> dict[str, str]:
+    def lists(self, value: Lined | None, known: Lists = NO_LISTS) -> Lists:
         """Lists by name, the known ones first: each a wording, or a list of wordings to choose from.
 
         One that can't be read is a fault, and empty from then on.
@@ -145,15 +147,13 @@ class GrammarFile:
                 lines[name] = item.line
         for name, line in lines.items():
             try:
-                parse_template(found[name], found)
+                Lists(found).parts(name, found[name])
             except GrammarError as error:
                 self.fault(error.reason, line)
                 found[name] = ""
-        return found
+        return Lists(found)
 
-    def wording(
-        self, text: str, line: int, lists: Mapping[str, str], slot_fault: SlotFault
-    ) -> Parts | None:
+    def wording(self, text: str, line: int, lists: Lists, slot_fault: SlotFault) -> Parts | None:
         """A wording, or None where it has a fault."""
         with self.kept(line):
             written = with_forms(text, self.irregular)
@@ -165,9 +165,7 @@ class GrammarFile:
             self.fault(f"{reason} It stands in {text!r}.", line)
         return None
 
-    def phrases(
-        self, value: Lined | None, what: str, lists: Mapping[str, str]
-    ) -> tuple[Phrase, ...]:
+    def phrases(self, value: Lined | None, what: str, lists: Lists) -> tuple[Phrase, ...]:
         """A list of phrases, the longest first; brackets and lists in them are written out."""
         found: set[Phrase] = set()
         for text, line in self.items(value, what):

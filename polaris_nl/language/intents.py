@@ -10,7 +10,7 @@ from typing import get_args
 
 from polaris_nl.language.grammar_file import GrammarFile, Phrase
 from polaris_nl.language.interpretation import Command
-from polaris_nl.language.template import Parts, Slot, slots_in
+from polaris_nl.language.template import Lists, Parts, Slot, slots_in
 from polaris_nl.model.errors import GrammarError, did_you_mean
 from polaris_nl.model.yaml_lines import Lined
 
@@ -130,9 +130,7 @@ class Intent:
     phrases: tuple[Phrase, ...] = ()
 
 
-def read_intent(
-    path: Path, lists: Mapping[str, str], faults: list[GrammarError] | None = None
-) -> Intent:
+def read_intent(path: Path, lists: Lists, faults: list[GrammarError] | None = None) -> Intent:
     """Reads the file of one intent.
 
     Args:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 from polaris_nl.language.grammar_file import GrammarFile
 from polaris_nl.language.mention import WORDLESS
-from polaris_nl.language.template import Parts, Slot, Source
+from polaris_nl.language.template import Lists, Parts, Slot, Source
 from polaris_nl.model.domain import Predicate
 from polaris_nl.model.errors import did_you_mean
 from polaris_nl.model.formula import Variable
@@ -49,7 +49,7 @@ def read_phrases(
     file: GrammarFile,
     predicate: Predicate,
     value: Lined,
-    lists: Mapping[str, str],
+    lists: Lists,
     types: Collection[str],
 ) -> Phrases:
     """Reads the phrases of a predicate.
@@ -74,8 +74,10 @@ def read_phrases(
     wordings: dict[str, list[Parts]] = {key: [] for key in WORDINGS}
     for key in WORDINGS:
         for text, line in file.items(fields.get(key), key):
-            if file.wording(text, line, lists, slot_fault) is None:
+            template = file.wording(text, line, lists, slot_fault)
+            if template is None:
                 continue
+            wordings[key].append(template)
             for kind, written in _variants(key, text):
                 template = file.wording(written, line, lists, slot_fault)
                 if template is not None:
@@ -98,7 +100,6 @@ def _variants(key: str, text: str) -> Iterator[tuple[str, str]]:
         The kind of each, and its text: `denied-states` "the cup isn't on the table", `wished-states`
         "the cup should be on the table", `small-states` "(I want) the cup on the table".
     """
-    yield key, text
     if key not in ("states", "not-states"):
         return
     if BE in text:

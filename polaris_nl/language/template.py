@@ -68,79 +68,110 @@ class Parts:
     states: list[_State] = field(default_factory=list, compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
-class _Text:
-    """A wording while it is read: its text, the lists it can use, and the lists that it stands in."""
+class Lists(Mapping[str, str]):
+    """Wordings that others use as `<name>`, by name; each is parsed once, when it is first used."""
 
-    text: str
-    lists: Mapping[str, str]
-    within: tuple[str, ...] = ()
+    def __init__(self, texts: Mapping[str, str] | None = None) -> None:
+        self._texts = dict(texts or {})
+        self._parts: dict[str, tuple[Part, ...]] = {}
+        self._open: list[str] = []
 
-    def inner(self, name: str) -> _Text:
-        if name not in self.lists:
+    def __getitem__(self, name: str) -> str:
+        return self._texts[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._texts)
+
+    def __len__(self) -> int:
+        return len(self._texts)
+
+    def parts(self, name: str, where: str) -> tuple[Part, ...]:
+        """What a list stands for.
+
+        Args:
+            name: the list.
+            where: the wording that uses it.
+
+        Raises:
+            GrammarError: it is unknown, uses itself, or can't be read.
+        """
+        if name not in self._texts:
             raise GrammarError(
-                f"There is no list <{name}> for {self.text!r}.{did_you_mean(name, self.lists)}"
+                f"There is no list <{name}> for {where!r}.{did_you_mean(name, self._texts)}"
             )
-        if name in self.within:
+        if name in self._open:
             raise GrammarError(f"The list <{name}> contains itself; write its words out.")
-        return _Text(self.lists[name], self.lists, (*self.within, name))
+        if name not in self._parts:
+            self._open.append(name)
+            try:
+                self._parts[name] = _whole(self._texts[name], self)
+            finally:
+                self._open.pop()
+        return self._parts[name]
 
 
-def parse_template(text: str, lists: Mapping[str, str], source: Source | None = None) -> Parts:
+NO_LISTS = Lists()
+
+
+def parse_template(text: str, lists: Lists = NO_LISTS, source: Source | None = None) -> Parts:
     """Reads a wording.
 
     Raises:
         GrammarError: a bracket is open, or a list is unknown.
     """
-    return Parts(_whole(_Text(text, lists)), source)
+    return Parts(_whole(text, lists), source)
 
 
-def _whole(text: _Text) -> tuple[Part, ...]:
-    symbols = _SYMBOL.findall(text.text)
-    parts, rest = _sequence(symbols, 0, text)
+def _whole(text: str, lists: Lists) -> tuple[Part, ...]:
+    symbols = _SYMBOL.findall(text)
+    parts, rest = _sequence(symbols, 0, text, lists)
     if rest == len(symbols):
         return parts
     if symbols[rest] == "|":
-        raise GrammarError(f"The | in {text.text!r} stands in no brackets; write (this|that).")
-    raise GrammarError(f"There is one closing bracket too many in {text.text!r}; take it out.")
+        raise GrammarError(f"The | in {text!r} stands in no brackets; write (this|that).")
+    raise GrammarError(f"There is one closing bracket too many in {text!r}; take it out.")
 
 
-def _sequence(symbols: Sequence[str], at: int, text: _Text) -> tuple[tuple[Part, ...], int]:
+def _sequence(
+    symbols: Sequence[str], at: int, text: str, lists: Lists
+) -> tuple[tuple[Part, ...], int]:
     parts: list[Part] = []
     while at < len(symbols) and symbols[at] not in (")", "]", "|"):
         symbol = symbols[at]
         at += 1
         if symbol in "([":
-            choice, at = _choice(symbols, at, symbol, text)
+            choice, at = _choice(symbols, at, symbol, text, lists)
             parts.append(choice)
         elif symbol in "{}<>":
             raise GrammarError(
-                f"The {symbol} in {text.text!r} is never closed or opened; write {{slot}} or <list>."
+                f"The {symbol} in {text!r} is never closed or opened; write {{slot}} or <list>."
             )
         elif symbol.startswith("{"):
             name, _, kind = symbol[1:-1].partition(":")
             parts.append(Slot(name, kind))
         elif symbol.startswith("<"):
-            parts.extend(_whole(text.inner(symbol[1:-1])))
+            parts.extend(lists.parts(symbol[1:-1], text))
         else:
             parts.extend(Word(word) for word in phrase(symbol))
     return tuple(parts), at
 
 
-def _choice(symbols: Sequence[str], at: int, opening: str, text: _Text) -> tuple[Choice, int]:
+def _choice(
+    symbols: Sequence[str], at: int, opening: str, text: str, lists: Lists
+) -> tuple[Choice, int]:
     closing = ")" if opening == "(" else "]"
     options = []
     while True:
-        parts, at = _sequence(symbols, at, text)
+        parts, at = _sequence(symbols, at, text, lists)
         options.append(Parts(parts))
         if at >= len(symbols):
-            raise GrammarError(f"A {opening} is never closed in {text.text!r}; add the {closing}.")
+            raise GrammarError(f"A {opening} is never closed in {text!r}; add the {closing}.")
         at += 1
         if symbols[at - 1] == closing:
             break
         if symbols[at - 1] != "|":
             raise GrammarError(
-                f"A {opening} is closed by {symbols[at - 1]} in {text.text!r}; write {closing}."
+                f"A {opening} is closed by {symbols[at - 1]} in {text!r}; write {closing}."
             )
     if closing == "]":
         options.append(Parts(()))

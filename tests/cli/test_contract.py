@@ -101,7 +101,7 @@ def test_plan_as_json_and_as_text(command: Command, lunch: Path) -> None:
     text = command("plan", lunch)
     assert text.code == 0
     assert "3 tell the resident that lunch is ready" in text.out
-    assert "Once lunchtime is dismissed, I go to the hall and go home." in text.out
+    assert "Once lunch is dismissed, I go to the hall and go home." in text.out
 
 
 def test_a_plan_with_a_problem_ends_with_1(command: Command, tmp_path: Path) -> None:
@@ -231,7 +231,7 @@ def test_export(command: Command, lunch: Path) -> None:
     assert command("export", lunch).out.startswith("flowchart TD\n")
     dot = command("export", lunch, "--to", "dot").out
     assert dot.startswith("digraph")
-    assert 'label="lunchtime is acknowledged"' in dot
+    assert 'label="lunch is acknowledged"' in dot
     assert "later version" in one_sentence(command("export", lunch, "--to", "isl").err)
     assert "later version" in one_sentence(command("import", lunch).err)
 

@@ -64,8 +64,8 @@ def test_nobody_answers_so_it_halts_after_the_wait_and_says_for_what(lunch: Case
     assert told.result.outcome == "halted"
     assert told.result.checkpoints == ("alerted",)
     assert told.result.reason == (
-        "I waited 30 seconds, but it didn't happen that lunchtime is acknowledged or "
-        "lunchtime is dismissed."
+        "I waited 30 seconds, but it didn't happen that lunch is acknowledged or "
+        "lunch is dismissed."
     )
     halt = told.one(Halted)
     assert halt.expected == ["(acknowledged lunchtime)", "(dismissed lunchtime)"]

@@ -40,7 +40,7 @@ from polaris_nl.model.world_file import read_world
 from polaris_nl.session import Session
 from polaris_nl.snapshot import Answer
 
-from .reader import OUTCOMES, spoken
+from .reader import OUTCOMES, language_of, spoken
 
 FOLDERS = ("dialogues", "dialogues_held_out")
 FORMS = ("typed", "spoken")
@@ -296,6 +296,9 @@ def play(dialogue: Dialogue, form: str = "typed") -> list[Played]:
     played = []
     options: tuple[str, ...] = ()
     with Session(world_of(dialogue.world)) as session:
+        session.understanding = language_of(
+            dialogue.world
+        )  # One for all dialogues: it is slow to make.
         for turn in dialogue.turns:
             before = session.snapshot.automaton
             said = in_form(turn.say, form)

@@ -18,7 +18,7 @@ async def start(stage: Stage, *sentences: str) -> None:
     for sentence in sentences:
         await stage.say(sentence)
     await stage.press("f5")
-    await stage.see("Shall I start?")
+    await stage.see("start? Say yes or no.")
     assert not runs()
     await stage.enter("yes")
 
