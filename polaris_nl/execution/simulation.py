@@ -225,7 +225,7 @@ class SimulatedRobot:
             if self._now >= at:
                 self._acted.add(action.name)
                 self._make_true(action.effect)
-                text = sentence(f"somebody acts: {action.name}")
+                text = sentence(f"a simulated person does this: {action.name}")
                 effect = [str(x) for x in action.effect]
                 self._sink(
                     PersonActed(time=self._now, text=text, action=action.name, effect=effect)

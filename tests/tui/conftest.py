@@ -9,9 +9,6 @@ from collections.abc import Awaitable, Callable, Iterator
 from pathlib import Path
 
 import pytest
-from polaris_tui.app import PolarisApp
-from polaris_tui.pane import Pane
-from polaris_tui.prompt import Prompt
 from textual.pilot import Pilot
 
 from polaris_nl.automaton.automaton import Automaton
@@ -20,6 +17,9 @@ from polaris_nl.model.world import World
 from polaris_nl.model.world_file import load_world
 from polaris_nl.planning.result import BranchingPlan
 from polaris_nl.session import Session
+from polaris_tui.app import PolarisApp
+from polaris_tui.pane import Pane
+from polaris_tui.prompt import Prompt
 
 LIMIT_S = 20.0
 """How long a test waits for something that comes at once: only a fault makes it wait."""

@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from polaris_tui.transcript import Entry
 
 from polaris_nl.automaton.automaton import START, Automaton, Checkpoint, Transition
 from polaris_nl.automaton.edits import AddCheckpoint, apply
 from polaris_nl.model.formula import parse_literal
 from polaris_nl.model.world import World
+from polaris_tui.transcript import Entry
 from tests.tui.conftest import Play, Stage
 
 HOSTILE = (

@@ -5,11 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from polaris_tui.layout import FIXED, heights
-from polaris_tui.phrases import order_in, view_asked
-from polaris_tui.progress import Progress, advanced
-from polaris_tui.transcript import MOST, Entry, Exchange, Transcript
-from polaris_tui.views import Scene, outline_rows, still_planned
 
 from polaris_nl.automaton.automaton import Automaton
 from polaris_nl.execution.events import (
@@ -27,6 +22,11 @@ from polaris_nl.model.world import World
 from polaris_nl.planning.planner import Planner
 from polaris_nl.render.glyphs import UNICODE
 from polaris_nl.snapshot import Snapshot
+from polaris_tui.layout import FIXED, heights
+from polaris_tui.phrases import order_in, view_asked
+from polaris_tui.progress import Progress, advanced
+from polaris_tui.transcript import MOST, Entry, Exchange, Transcript
+from polaris_tui.views import Scene, outline_rows, still_planned
 from tests.planning.conftest import program
 
 STEPS = ("open: (open fridge)", "hall: (robot-at hall)")
