@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import os
 import platform
 import sys
 
@@ -24,6 +25,8 @@ def main() -> None:
     unknown = [name for name in names if name not in PARTS]
     if unknown:
         raise SystemExit(f"bench: there is no part {unknown[0]}; parts: {', '.join(PARTS)}")
+    # Processes that are started here find compiled modules, as a user's do from the second start on.
+    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
     sys.stdout.write(
         f"Python {platform.python_version()}, {platform.machine()}; caches warm; times in ms unless said.\n"
     )

@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 from typing import Protocol, TypeVar
 
@@ -152,8 +153,13 @@ def _sequence(
         elif symbol.startswith("<"):
             parts.extend(lists.parts(symbol[1:-1], text))
         else:
-            parts.extend(Word(word) for word in phrase(symbol))
+            parts.extend(_words(symbol))
     return tuple(parts), at
+
+
+@cache
+def _words(symbol: str) -> tuple[Word, ...]:
+    return tuple(Word(word) for word in phrase(symbol))
 
 
 def _choice(

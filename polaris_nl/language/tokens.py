@@ -78,9 +78,23 @@ _BREAKS = {
 
 @cache
 def _tokenizer() -> Any:
-    import spacy
+    """Makes spaCy's tokenizer for English with what `words` leaves to it: contractions and possessives.
 
-    return spacy.blank("en").tokenizer
+    The pipeline around it takes longer to make than all else here, as do its rules for capitals and web
+    addresses.
+    """
+    from spacy.lang.en import EnglishDefaults
+    from spacy.tokenizer import Tokenizer
+    from spacy.util import compile_prefix_regex, compile_suffix_regex
+    from spacy.vocab import Vocab
+
+    exceptions = EnglishDefaults.tokenizer_exceptions
+    return Tokenizer(
+        Vocab(),
+        rules={text: parts for text, parts in exceptions.items() if text == text.lower()},
+        prefix_search=compile_prefix_regex(EnglishDefaults.prefixes or ()).search,
+        suffix_search=compile_suffix_regex(EnglishDefaults.suffixes or ()).search,
+    )
 
 
 def plain(text: str) -> str:
