@@ -9,38 +9,34 @@ from collections.abc import Iterator
 
 from bench.table import Row, timed
 from polaris_nl.automaton.automaton import Automaton
-from polaris_nl.language.understanding import Understanding
-from polaris_nl.model.world_file import load_world
+from tests.language.phenomena_reader import all_phenomena
+from tests.language.reader import language_of
 
-SENTENCES = (
-    "tell the resident that lunch is ready",
-    "once she acknowledges bring a full tray to her table and then go home",
-    "if she dismisses it just go home",
-    "could you please put the blue cup on the desk and fill the tray",
-    "tell the resident that lunch is ready. once she acknowledges, bring a full tray to her table and then go "
-    "home. if she dismisses it, just go home",
-    "open the fridge, take the bottle of water out and bring it to mr brown's nightstand",
-    "what will you do if she dismisses it?",
-    "bring the zeppelin to the moon",
-    "unless the caregiver is in the office bring all the cups to the kitchen",
-    "no I meant the other table",
+LONG = (
+    "bring the blue cup to the desk and fill the tray, then go to the kitchen, "
+    "once the caregiver is in the office open the fridge, "
 )
+"""Some 25 words, said again and again for long utterances."""
+SIZES = (60, 120, 240)
 
 
 def rows() -> Iterator[Row]:
     """The rows about language."""
     import spacy
 
-    understanding = Understanding(load_world("care-home"))
     tokens = spacy.blank("en")
-    for text in SENTENCES:
-        understanding.interpret(text, Automaton())
     ours, plain = [], []
-    for _ in range(10):
-        for text in SENTENCES:
-            ours += timed(lambda text=text: understanding.interpret(text, Automaton()), 1)  # type: ignore[misc]
-            plain += timed(lambda text=text: tokens(text), 1)  # type: ignore[misc]
+    for case in all_phenomena():
+        language = language_of(case.world)
+        for text in () if case.held_out else case.wordings:
+            language.interpret(text, Automaton())
+            ours += timed(lambda s=text, u=language: u.interpret(s, Automaton()), 1)  # type: ignore[misc]
+            plain += timed(lambda s=text: tokens(s), 1)  # type: ignore[misc]
     yield Row("typed utterance -> interpretation", "p95 <= 15", ours, plain, "spaCy's tokens alone")
+    for size in SIZES:
+        text = " ".join((LONG * size).split()[:size])
+        times = timed(lambda s=text: language_of("care-home").interpret(s, Automaton()), 5)  # type: ignore[misc]
+        yield Row(f"an utterance of {size} words", "", times)
     _python(START)
     yield Row(
         "start-up of the language side",
@@ -85,5 +81,6 @@ def _ready(code: str) -> float:
 
 
 def _memory(code: str) -> float:
-    measure = "\nimport resource; print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024)"
-    return float(_python(code + measure))
+    # What getrusage tells of a child begins with what its parent had.
+    measure = "\nfor line in open('/proc/self/status'):\n if line[:6] == 'VmHWM:': print(line.split()[1])"
+    return int(_python(code + measure)) / 1024
