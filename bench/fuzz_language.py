@@ -1,6 +1,7 @@
 """`python -m bench.fuzz_language [N]`: N random utterances, of which none may raise or half-change anything.
 
-Half are made of the grammar's and the world's words, half of any characters at all.
+Half are made of any characters at all, and may change nothing. Half are made of the grammar's and the world's
+words, of which a few happen to be goals; those are printed.
 """
 
 from __future__ import annotations
@@ -25,23 +26,27 @@ def main() -> None:
     vocabularies = [
         sorted({w for p in language.phrases() for w in p.split()}) for language in languages
     ]
-    started, applied = time.perf_counter(), 0
+    started, goals = time.perf_counter(), []
     for _ in range(count):
         index = chance.randrange(2)
+        salad = chance.random() < 0.5
         text = (
             " ".join(chance.choices(vocabularies[index], k=chance.randrange(1, 12)))
-            if chance.random() < 0.5
+            if salad
             else "".join(chr(_character(chance)) for _ in range(chance.randrange(60)))
         )
         meant, _dialogue = languages[index].interpret(text, Automaton())
         assert meant.outcome in OUTCOMES, text
         assert bool(meant.edits) == (meant.outcome == "applied") or meant.partial, text
         apply_all(Automaton(), meant.edits)
-        applied += meant.outcome == "applied"
+        if meant.edits:
+            assert salad, text
+            goals.append(f"{text!r}: {meant.say}")
     seconds = time.perf_counter() - started
     sys.stdout.write(
-        f"{count} random utterances in {seconds:.0f} s: nothing raised; {applied} were goals.\n"
+        f"{count} random utterances in {seconds:.0f} s: nothing raised, and no noise changed anything.\n"
     )
+    sys.stdout.write("".join(f"Words that happen to be goals: {goal}\n" for goal in goals))
 
 
 def _character(chance: random.Random) -> int:

@@ -82,5 +82,7 @@ def _ready(code: str) -> float:
 
 def _memory(code: str) -> float:
     # What getrusage tells of a child begins with what its parent had.
-    measure = "\nfor line in open('/proc/self/status'):\n if line[:6] == 'VmHWM:': print(line.split()[1])"
+    measure = (
+        "\nfor line in open('/proc/self/status'):\n if line[:6] == 'VmHWM:': print(line.split()[1])"
+    )
     return int(_python(code + measure)) / 1024
