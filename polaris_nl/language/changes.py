@@ -15,11 +15,11 @@ from polaris_nl.automaton.edits import (
     SetGoals,
     apply_all,
 )
+from polaris_nl.language.conditions import condition_in
 from polaris_nl.language.dialogue import Dialogue, Latest
 from polaris_nl.language.generate import goals_in_words, steps_in_words
 from polaris_nl.language.interpretation import Interpretation
 from polaris_nl.language.patterns import Match, Patterns
-from polaris_nl.language.queries import _condition
 from polaris_nl.language.reading import steps_of
 from polaris_nl.language.references import meant
 from polaris_nl.language.reshaping import (
@@ -156,7 +156,7 @@ class Changes:
         if intent == "connect":
             return self._connected(match, this, named["l"], program, dialogue)
         if intent == "condition":
-            when = _condition(
+            when = condition_in(
                 self._language, match.tokens, slots["c"], dialogue.scope, introduced=True
             )
             if not when:
@@ -226,7 +226,7 @@ class Changes:
     ) -> tuple[Literal, ...]:
         """The condition of a connection: "she dismisses it", or "dismissed" alone, of what was said there."""
         language, span = self._language, match.slots["f"]
-        when = _condition(language, match.tokens, span, dialogue.scope)
+        when = condition_in(language, match.tokens, span, dialogue.scope)
         if when:
             return when
         assert isinstance(span, tuple)

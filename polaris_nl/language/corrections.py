@@ -23,6 +23,7 @@ from polaris_nl.language.changes import (
     steps_there,
 )
 from polaris_nl.language.choosing import Choosing
+from polaris_nl.language.conditions import condition_in
 from polaris_nl.language.dialogue import Dialogue, Latest
 from polaris_nl.language.exchange import exchanged, used_in, without
 from polaris_nl.language.expansions import expansions
@@ -30,7 +31,6 @@ from polaris_nl.language.generate import goals_in_words, steps_in_words
 from polaris_nl.language.interpretation import Interpretation
 from polaris_nl.language.mention import Mention
 from polaris_nl.language.patterns import Match, Patterns, strip
-from polaris_nl.language.queries import _condition
 from polaris_nl.language.references import References, meant
 from polaris_nl.language.rereading import Rereading
 from polaris_nl.language.resolve import Misfit, Unclear
@@ -279,7 +279,7 @@ class Corrections:
     ) -> tuple[list[Edit], str] | None:
         """Another condition: "no, if he acknowledges it"."""
         words = core.words
-        when = _condition(self._language, words, (0, len(words)), dialogue.scope, introduced=True)
+        when = condition_in(self._language, words, (0, len(words)), dialogue.scope, introduced=True)
         if not when or not touched:
             return None
         way = [touched[-1], *(t.source for t in reversed(program.path(touched[-1])))]

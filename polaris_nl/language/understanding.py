@@ -8,9 +8,11 @@ from functools import cached_property
 
 from polaris_nl.automaton.automaton import START, Automaton
 from polaris_nl.automaton.edits import apply_all
+from polaris_nl.language.asking import Asking
 from polaris_nl.language.changes import Changes
 from polaris_nl.language.clauses import ClauseFinder
 from polaris_nl.language.commands import Commands, Told
+from polaris_nl.language.conditions import condition_in
 from polaris_nl.language.corrections import Corrections
 from polaris_nl.language.dialogue import Dialogue, Latest, Pending, recalled
 from polaris_nl.language.generate import read_back, steps_in_words
@@ -22,7 +24,7 @@ from polaris_nl.language.mentions import MentionFinder
 from polaris_nl.language.naming import Names
 from polaris_nl.language.patterns import Patterns, strip
 from polaris_nl.language.phrases import recogniser_phrases
-from polaris_nl.language.queries import Asking, _condition, answer_to
+from polaris_nl.language.queries import answer_to
 from polaris_nl.language.questions import Questions
 from polaris_nl.language.reading import steps_of
 from polaris_nl.language.references import References, UnclearStep
@@ -248,7 +250,7 @@ class Understanding:
         key = tuple(tokens)
         if key not in self._read:
             scope = recalled(program).scope
-            self._read[key] = _condition(self, tokens, (0, len(tokens)), scope)
+            self._read[key] = condition_in(self, tokens, (0, len(tokens)), scope)
         return self._read[key]
 
     def _told(self, utterance: str, told: Told) -> Interpretation:
