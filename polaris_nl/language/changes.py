@@ -40,7 +40,7 @@ from polaris_nl.language.reshaping import (
     swapped,
     unconditional,
 )
-from polaris_nl.language.resolve import Misfit, Unclear
+from polaris_nl.language.scope import Misfit, Unclear
 from polaris_nl.language.structure import Step
 from polaris_nl.language.tokens import BREAK, COMMA
 from polaris_nl.model.errors import EditError

@@ -10,7 +10,7 @@ from polaris_nl.automaton.edits import Edit
 from polaris_nl.language.dialogue import Dialogue
 from polaris_nl.language.exchange import exchanged, kinds_in, used_in
 from polaris_nl.language.mention import Mention
-from polaris_nl.language.resolve import Misfit, Unclear
+from polaris_nl.language.scope import Misfit, Unclear
 from polaris_nl.model.formula import Literal
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from polaris_nl.language.resolve import Misfit, Scope, Unclear
+from polaris_nl.language.scope import Misfit, Scope, Unclear
 from polaris_nl.language.segment import Cut
 from polaris_nl.model.formula import Literal
 

@@ -33,7 +33,7 @@ from polaris_nl.language.mention import Mention
 from polaris_nl.language.patterns import Match, Patterns, strip
 from polaris_nl.language.references import References, meant
 from polaris_nl.language.rereading import Rereading
-from polaris_nl.language.resolve import Misfit, Unclear
+from polaris_nl.language.scope import Misfit, Unclear
 from polaris_nl.language.structure import Step
 from polaris_nl.language.tokens import BREAK, COMMA
 from polaris_nl.model.errors import EditError

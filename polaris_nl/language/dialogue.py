@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import Literal as OneOf
 
 from polaris_nl.automaton.automaton import Automaton
-from polaris_nl.language.resolve import Scope
+from polaris_nl.language.scope import Scope
 from polaris_nl.model.formula import literals_in
 
 

@@ -11,7 +11,7 @@ from polaris_nl.language.clauses import Clause
 from polaris_nl.language.conditions import stated
 from polaris_nl.language.interpretation import Query, QueryKind
 from polaris_nl.language.mention import Candidate, Mention
-from polaris_nl.language.resolve import Misfit, Scope, Unclear
+from polaris_nl.language.scope import Misfit, Scope, Unclear
 from polaris_nl.language.segment import Cut
 from polaris_nl.model.formula import Literal
 

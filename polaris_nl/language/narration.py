@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 
 from polaris_nl.automaton.automaton import START, Automaton, Checkpoint, Transition
 from polaris_nl.language.naming import Names
-from polaris_nl.language.resolve import Misfit
+from polaris_nl.language.scope import Misfit
 from polaris_nl.language.structure import Builder, Step
 from polaris_nl.language.telling import Teller, Told
 from polaris_nl.language.wording import GrammarWording

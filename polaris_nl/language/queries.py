@@ -15,7 +15,7 @@ from polaris_nl.language.facts_asked import FactsAsked
 from polaris_nl.language.interpretation import Interpretation, Query, QueryKind
 from polaris_nl.language.mention import Mention
 from polaris_nl.language.patterns import Match, Patterns
-from polaris_nl.language.resolve import Misfit, Unclear
+from polaris_nl.language.scope import Misfit, Unclear
 from polaris_nl.language.tokens import BREAK, COMMA
 from polaris_nl.model.evaluate import holds
 from polaris_nl.model.formula import Literal, literals_in

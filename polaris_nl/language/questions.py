@@ -7,7 +7,9 @@ from collections.abc import Callable, Iterator, Sequence
 from polaris_nl.language.common import Common
 from polaris_nl.language.dialogue import Pending
 from polaris_nl.language.mention import Mention
-from polaris_nl.language.resolve import EVERY_ONE, Misfit, Resolver, Scope
+from polaris_nl.language.referents import EVERY_ONE
+from polaris_nl.language.resolve import Resolver
+from polaris_nl.language.scope import Misfit, Scope
 from polaris_nl.language.tokens import BREAK, COMMA, phrase
 from polaris_nl.language.wording import GrammarWording
 from polaris_nl.model.text import listed

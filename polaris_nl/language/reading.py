@@ -7,7 +7,8 @@ from contextlib import suppress
 from dataclasses import replace
 
 from polaris_nl.language.mention import Mention
-from polaris_nl.language.resolve import Misfit, Resolver, Scope, Unclear
+from polaris_nl.language.resolve import Resolver
+from polaris_nl.language.scope import Misfit, Scope, Unclear
 from polaris_nl.language.segment import Cut, Item
 from polaris_nl.language.structure import Step
 from polaris_nl.model.formula import Formula, Goal, Literal

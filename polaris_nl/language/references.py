@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from polaris_nl.automaton.automaton import START, Automaton
 from polaris_nl.language.grammar import Grammar
 from polaris_nl.language.mention import Mention
-from polaris_nl.language.resolve import Scope, Unclear
+from polaris_nl.language.scope import Scope, Unclear
 from polaris_nl.language.template import first_words
 from polaris_nl.language.tokens import phrase
 from polaris_nl.language.verbs import INFLECTED, Verbs

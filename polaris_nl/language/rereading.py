@@ -20,7 +20,7 @@ from polaris_nl.language.dialogue import Dialogue
 from polaris_nl.language.interpretation import Interpretation
 from polaris_nl.language.patterns import Match
 from polaris_nl.language.references import References
-from polaris_nl.language.resolve import Unclear
+from polaris_nl.language.scope import Unclear
 from polaris_nl.model.errors import EditError
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ from polaris_nl.automaton.edits import (
     apply,
 )
 from polaris_nl.language.naming import Names
-from polaris_nl.language.resolve import Misfit
+from polaris_nl.language.scope import Misfit
 from polaris_nl.model.formula import Goal, Literal, literals_in
 from polaris_nl.model.world import World
 

@@ -31,7 +31,8 @@ from polaris_nl.language.references import References, UnclearStep
 from polaris_nl.language.refusals import Refusals
 from polaris_nl.language.repair import Repairs
 from polaris_nl.language.rereading import with_phrase
-from polaris_nl.language.resolve import Misfit, Resolver, Scope, Unclear
+from polaris_nl.language.resolve import Resolver
+from polaris_nl.language.scope import Misfit, Scope, Unclear
 from polaris_nl.language.segment import Cut, Segmenter, cheapest
 from polaris_nl.language.spelling import Spelling
 from polaris_nl.language.structure import Builder, Step
