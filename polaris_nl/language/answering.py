@@ -1,0 +1,156 @@
+"""Reads an utterance as the answer to the question that is open."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from polaris_nl.automaton.automaton import Automaton
+from polaris_nl.language.commands import Commands
+from polaris_nl.language.corrections import Corrections
+from polaris_nl.language.dialogue import Dialogue, Pending
+from polaris_nl.language.interpretation import Interpretation
+from polaris_nl.language.references import References
+from polaris_nl.language.rereading import with_phrase
+from polaris_nl.language.scope import Unclear
+from polaris_nl.language.tokens import words
+
+if TYPE_CHECKING:
+    from polaris_nl.language.understanding import Understanding
+
+
+class Answering:
+    """Reads answers for one `Understanding`.
+
+    Args:
+        language: its other parts.
+        commands: which take precedence over steps.
+        corrections: "no, the plate" answers, too.
+        references: finds the steps that an answer names.
+    """
+
+    def __init__(
+        self,
+        language: Understanding,
+        commands: Commands,
+        corrections: Corrections,
+        references: References,
+    ) -> None:
+        self._language = language
+        self._commands = commands
+        self._corrections = corrections
+        self._references = references
+        common = language.grammar.common
+        self._connectives = tuple(
+            words
+            for mark in ("if", "until", "unless", "else")
+            for words in common.connectives[mark]
+        )
+
+    def _done_then(
+        self,
+        utterance: str,
+        bare: Sequence[str],
+        pending: Pending,
+        program: Automaton,
+        dialogue: Dialogue,
+    ) -> tuple[Interpretation, Dialogue] | None:
+        """The condition that came alone with what is to be done then, or None for something else."""
+        begins = any(tuple(bare[: len(words)]) == words for words in self._connectives)
+        if begins or self._commands.meant(bare) is not None:
+            return None
+        whole = f"{pending.utterance.strip(' .,!?')}, {utterance}"
+        meant, after = self._language.interpret(whole, program, dialogue)
+        if meant.outcome not in ("applied", "question") or after.pending == pending:
+            return None
+        return replace(meant, utterance=utterance), after
+
+    def _chosen(
+        self, bare: Sequence[str], pending: Pending, program: Automaton, dialogue: Dialogue
+    ) -> tuple[str, ...] | None:
+        """What an answer chooses: () for none of it, None where it is no answer.
+
+        Raises:
+            Unclear: it may be the answer, but has several meanings.
+        """
+        core = self._corrections.core(bare)
+        for tokens in (bare, core.words) if core.words != list(bare) else (bare,):
+            chosen = self._language.questions.choice(
+                tokens, pending, self._language.mentions, dialogue.scope
+            )
+            if chosen is None and pending.kind == "step":
+                chosen = self._chosen_step(tokens, pending, program)
+            if chosen is not None:
+                return chosen
+        return None
+
+    def _chosen_step(
+        self, tokens: Sequence[str], pending: Pending, program: Automaton
+    ) -> tuple[str, ...] | None:
+        ids = {i for _, i in pending.options}
+        for found in self._references.at(tokens, 0, program, (), self._language.mentions(tokens)):
+            fitting = [i for i in found.ids if i in ids]
+            if found.end == len(tokens) and len(fitting) == 1:
+                return (fitting[0],)
+        return None
+
+    def _asked_again(
+        self,
+        utterance: str,
+        bare: Sequence[str],
+        pending: Pending,
+        program: Automaton,
+        dialogue: Dialogue,
+    ) -> tuple[Interpretation, Dialogue] | None:
+        """What was asked about is corrected: "Which bowl?" - "No, the plate"."""
+        core = self._corrections.core(bare)
+        if not core.strength or pending.kind != "thing" or not self._language.mentions(core.words):
+            return None
+        if not any(m.end == len(core.words) for m in self._language.mentions(core.words)[0]):
+            return None
+        tokens = with_phrase(words(pending.utterance), words(pending.phrase), core.words)
+        if tokens is None:
+            return None
+        meant, after = self._language.interpret(" ".join(tokens), program, dialogue)
+        if meant.outcome not in ("applied", "question"):
+            return None
+        return replace(meant, utterance=utterance), after
+
+    def answered(
+        self,
+        utterance: str,
+        bare: Sequence[str],
+        pending: Pending,
+        program: Automaton,
+        dialogue: Dialogue,
+    ) -> tuple[Interpretation, Dialogue] | None:
+        """Reads an utterance as the answer to the open question, or None where it is something else."""
+        if pending.kind == "then" and tuple(bare) not in self._language.questions.neither:
+            return self._done_then(utterance, bare, pending, program, dialogue)
+        try:
+            chosen = self._chosen(bare, pending, program, dialogue)
+        except Unclear as unclear:
+            narrowed = Unclear(
+                unclear.about, unclear.options, pending.phrase, pending.types, pending.number
+            )
+            meant, after = self._language.asked(pending.utterance, narrowed, dialogue)
+            return replace(meant, utterance=utterance), after
+        if chosen is None:
+            return self._asked_again(utterance, bare, pending, program, dialogue)
+        if not chosen:
+            say = "All right, I left that out. Say it another way."
+            scope = replace(dialogue.scope, choices={})
+            return Interpretation(utterance, "answer", say), replace(dialogue, scope=scope)
+        choices = {**dialogue.scope.choices, pending.phrase: chosen}
+        answered = replace(dialogue, scope=replace(dialogue.scope, choices=choices))
+        meant, after = self._language.interpret(pending.utterance, program, answered)
+        if after.pending is None:  # Another question of the same utterance needs this answer again.
+            scope = after.scope
+            fresh = [
+                c for c in chosen if c in self._language.world.entities and c not in scope.referents
+            ]
+            for name in fresh:
+                scope = scope.after((name,))
+            after = replace(after, scope=replace(scope, choices={}))
+        return replace(meant, utterance=utterance), after
