@@ -239,6 +239,12 @@ class ClauseFinder:
             for f in self._world.facts
         )
 
+    def is_furniture_on_another(self, mention: Mention) -> bool:
+        """Whether a surface or a container is said to be on or in another one."""
+        named = [c.entity for m in (mention, mention.place) if m for c in m.candidates]
+        kinds = {self._world.entities[name].type for name in named}
+        return kinds <= {"surface", "container"}
+
     def _place_of_surfaces(self, mention: Mention, types: Sequence[str]) -> bool:
         """A region where a surface is wanted: "bring the cup to the kitchen" asks where in the kitchen."""
         return "surface" in types and any(
@@ -282,16 +288,22 @@ def pronoun_types(pronoun: str) -> tuple[str, ...]:
 
 
 _BESIDE = 0.5
+_PLACE, _ELSEWHERE, _ON_ANOTHER = 0.15, 0.3, 0.4
 _IDLE_PLACE = 2.5
-"""What a place in a list costs where nothing stands: in "the bowl in the cupboard and the cup in the
-drawer" it is where the bowl is to be put."""
+"""What a place in a list costs, unless each thing stands where it says: in "the bowl in the cupboard and
+the cup in the drawer" it is where the bowl is to be put."""
 
 
 def _mention_cost(mention: Mention, types: Sequence[str], finder: ClauseFinder) -> float:
-    cost = 0.15 if mention.place is not None else 0.0
+    cost = _place_cost(mention, finder)
     cost += _BESIDE if mention.beside else 0.0
     if mention.parts:
-        placed = sum(_IDLE_PLACE for p in mention.parts if p.place and not finder.stands_there(p))
+        everywhere = all(p.place for p in mention.parts)
+        placed = sum(
+            _IDLE_PLACE
+            for p in mention.parts
+            if p.place and not (everywhere and finder.stands_there(p))
+        )
         return cost + 0.02 * len(mention.parts) + placed
     cost += 0.05 * len(mention.states)
     best = min((c.rank for c in mention.candidates), default=0)
@@ -301,3 +313,11 @@ def _mention_cost(mention: Mention, types: Sequence[str], finder: ClauseFinder) 
         kinds = {finder._world.entities[c.entity].type for c in mention.candidates}
         place = 0.4 if "surface" not in kinds else 0.0
     return cost + vague + place
+
+
+def _place_cost(mention: Mention, finder: ClauseFinder) -> float:
+    """What it costs to take a place for a description: "the cup on the table", which stands there."""
+    if mention.place is None:
+        return 0.0
+    cost = _PLACE if finder.stands_there(mention) else _PLACE + _ELSEWHERE
+    return cost + (_ON_ANOTHER if finder.is_furniture_on_another(mention) else 0.0)

@@ -275,6 +275,11 @@ class Referents:
         if self._in_a_region(mention, scope):
             return Meant(tuple(names))
         kind = mention.kind or (types[0] if types else "object")
+        if not mention.kind and any(c.rank < KIND_RANK for c in mention.candidates):
+            # "Every bottle", where the only bottle is called just so: its name is as good as a kind.
+            if len(names) != 1:
+                return Meant(tuple(names))
+            kind = names[0]
         variable = Variable("?x", (types[0] if types else "object",))
         parts: list[Formula] = []
         if kind != variable.types[0]:
