@@ -140,6 +140,8 @@ class Changes:
         if intent in ("at-start", "before-that"):
             return self._put(match, START if intent == "at-start" else latest, program, dialogue)
         this = named.get("k", latest)
+        if intent == "else" and self._language.asks_for(match.tokens[1:]):
+            raise Misfit("")  # "Otherwise put the cup away" asks for it, whatever step does that already.
         if this == START and intent in _NOT_START:
             raise EditError(_NOT_START[intent])
         name = program.checkpoints[this].name

@@ -189,7 +189,7 @@ class Understanding:
             changed = changed or self.edited(utterance, part, program, dialogue)
         if changed is not None:
             return changed
-        if self._asks_for([t for t in tokens if t not in (BREAK, COMMA)]):
+        if self.asks_for([t for t in tokens if t not in (BREAK, COMMA)]):
             return self.said(utterance, tokens, program, dialogue)
         try:
             before = replace(dialogue, asked=asked)
@@ -247,7 +247,7 @@ class Understanding:
         say = self.help if command == "help" else _COMMAND_SAYS.get(command, "")
         return Interpretation(utterance, "command", say, command=command, agrees=told.agrees)
 
-    def _asks_for(self, tokens: Sequence[str]) -> bool:
+    def asks_for(self, tokens: Sequence[str]) -> bool:
         """Whether tokens as a whole are one imperative: "find the fork" is a goal where it can be one."""
         if not tokens:
             return False

@@ -205,29 +205,12 @@ def fault(text: str, program: Automaton) -> bool:
     every = [all_of(g) for c in program.checkpoints.values() for g in c.goals]
     if any(_has_place_and_exception(goal) for goal in every if goal is not None):
         return True
-    goals = [c.goals for c in program.checkpoints.values()]
-    return any(
-        not t.when and _common(program.checkpoints[t.target].goals, goals)
-        for t in program.transitions.values()
-        if program.is_else(t.id)
-    )
+    return False
 
 
 def _has_place_and_exception(goal: AllOf) -> bool:
     placed = any(isinstance(p, Literal) and p.predicate in PLACES for p in goal.conditions)
     return placed and any(isinstance(p, Not) for p in goal.conditions)
-
-
-def _common(these: Sequence[Goal], all_goals: Sequence[Sequence[Goal]]) -> bool:
-    """Whether another step moves the same things."""
-    about = _about(these)
-    return sum(bool(about & _about(goals)) for goals in all_goals) > 1
-
-
-def _about(goals: Sequence[Goal]) -> set[str]:
-    """What is to be moved: things, and kinds of things."""
-    found = [x for goal in goals for x in literals_in(goal) if x.predicate in (*PLACES, KIND)]
-    return {x.args[1 if x.predicate in ("has", KIND) else 0] for x in found} - {"?x"}
 
 
 @often
