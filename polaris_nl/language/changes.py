@@ -41,6 +41,7 @@ from polaris_nl.language.reshaping import (
     unconditional,
 )
 from polaris_nl.language.scope import Misfit, Unclear
+from polaris_nl.language.segment import Item
 from polaris_nl.language.structure import Step
 from polaris_nl.language.tokens import BREAK, COMMA
 from polaris_nl.model.errors import EditError
@@ -141,7 +142,9 @@ class Changes:
             return self._put(match, START if intent == "at-start" else latest, program, dialogue)
         this = named.get("k", latest)
         if intent == "else" and self._language.asks_for(match.tokens[1:]):
-            raise Misfit("")  # "Otherwise put the cup away" asks for it, whatever step does that already.
+            raise Misfit(
+                ""
+            )  # "Otherwise put the cup away" asks for it, whatever step does that already.
         if this == START and intent in _NOT_START:
             raise EditError(_NOT_START[intent])
         name = program.checkpoints[this].name
@@ -255,7 +258,11 @@ class Changes:
         """
         assert isinstance(span, tuple)
         steps = self.steps(list(tokens[span[0] : span[1]]), dialogue)
-        if not steps or not steps[0].goals or not all(_plain(s) for s in steps[1:]):
+        if (
+            not steps
+            or not (steps[0].goals or steps[0].when)
+            or not all(_plain(s) for s in steps[1:])
+        ):
             raise Misfit("")
         return tuple(g for s in steps for g in s.goals), steps[0].when
 
@@ -267,7 +274,7 @@ class Changes:
         """
         question: Unclear | None = None
         for cut in self._language.cuts(tokens):
-            if cut.unknown or not any(i.role in ("goal", "again") for i in cut.items):
+            if cut.unknown or not any(_asks(i) for i in cut.items):
                 continue
             try:
                 steps, _ = steps_of(cut, self._language.resolver, dialogue.scope)
@@ -281,6 +288,10 @@ class Changes:
         if question is not None:
             raise question
         return []
+
+
+def _asks(item: Item) -> bool:
+    return item.role in ("goal", "again") or item.mark == "nothing"
 
 
 _NOT_START = {

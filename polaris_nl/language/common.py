@@ -18,7 +18,8 @@ from polaris_nl.model.yaml_lines import Lined
 
 SCHEMA = "polaris-grammar/1"
 MARKS = (
-    "and", "or", "then", "if", "until", "unless", "else", "not", "before", "done", "purpose", "given", "polite"
+    "and", "or", "then", "if", "until", "unless", "else", "not", "before", "done", "purpose", "given", "polite",
+    "nothing"
 )  # fmt: skip
 """The connectives that there are."""
 _FIELDS = (

@@ -35,6 +35,8 @@ def steps_in_words(steps: Sequence[Step], wording: GrammarWording) -> str:
             following = steps[steps.index(step) + 1 :][:1]
             if following and following[0].role == "else":
                 refused = step
+            elif not step.sequel:
+                teller.sentence("", "if " if branched else "once ", told)
             else:
                 teller.sentence("", "wait until ", told, alone=True)
         elif step.when:

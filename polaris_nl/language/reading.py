@@ -118,6 +118,8 @@ class _Reader:
             self._else_next, self._new_step = True, True
         elif item.mark == "not":
             self._negate = True
+        elif item.mark == "nothing":
+            self._nothing()
         elif item.mark == "or":
             self._either()
         elif item.role == "goal":
@@ -131,9 +133,26 @@ class _Reader:
         elif item.role == "topic" and item.mention is not None:
             self._named(item.mention)
 
+    def _nothing(self) -> None:
+        """`do nothing`: a way on that ends there, without goals."""
+        if self._else_next:
+            self.steps.append(Step((), (), "else"))
+            self._else_next = False
+        elif self._when:
+            self.steps.append(Step((), self._when, "condition", self._waits))
+        else:
+            self.steps.append(Step())
+        self._when, self._how, self._new_step = (), "", False
+
     def finish(self) -> None:
-        """A wait that nothing follows becomes an empty checkpoint."""
+        """A wait that nothing follows becomes an empty checkpoint.
+
+        Raises:
+            Misfit: something is missing.
+        """
         self._flush()
+        if any(step == Step() for step in self.steps):
+            raise Misfit("Then there is nothing to do; say what the robot should achieve, or undo.")
         if self._how in ("until", "if") and self._when:
             if self._how == "if":
                 raise Misfit(

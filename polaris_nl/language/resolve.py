@@ -77,6 +77,8 @@ class Resolver:
             meant = self.meant(bound, parameter.types, scope, condition)
             scope = scope.after(meant.entities)
             chosen.append(meant)
+            if bound.text == "nothing" and clause.kind == "goal" and not condition:
+                raise Misfit("Then there is nothing to do; say what the robot should achieve.")
         goals = self._combined(clause, chosen)
         told = tuple(x.args for x in goals if isinstance(x, Literal) and self._tells(x))
         if told and not condition:

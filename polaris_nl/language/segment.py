@@ -20,7 +20,7 @@ from polaris_nl.language.tokens import BREAK, COMMA
 
 Connective = OneOf[
     "and", "or", "then", "if", "until", "unless", "else", "not", "before", "done", "purpose", "given",
-    "polite",
+    "polite", "nothing",
 ]  # fmt: skip
 Mark = Connective | OneOf["assure", "comma", "break"]
 Role = OneOf["goal", "condition", "fact", "topic", "again", "except", "mark", "unknown"]

@@ -214,7 +214,9 @@ def _understood(cuts: Sequence[Cut]) -> list[Cut]:
 
 
 def _says_something(cut: Cut) -> bool:
-    return any(item.role in ("goal", "condition", "again") for item in cut.items)
+    return any(
+        item.role in ("goal", "condition", "again") or item.mark == "nothing" for item in cut.items
+    )
 
 
 def _only_conditions(cut: Cut) -> bool:

@@ -196,16 +196,13 @@ def heard(world: str, said: Sequence[str]) -> Automaton:
 def fault(text: str, program: Automaton) -> bool:
     """Whether what is said meets what the parser is known to misread, though people understand it.
 
-    "Do nothing" is no goal to it; "after alerted, otherwise ..." is no edit; "otherwise put the cup
-    in the cupboard" is taken for an edit where a step is about the cup already; in "bring every cup from the
-    desk but the red cup to the sink" it takes the desk for where to.
+    "After alerted, otherwise ..." is no edit; in "bring every cup from the desk but the red cup to the sink"
+    it takes the desk for where to.
     """
-    if "do nothing" in text.lower() or ", otherwise" in text:
+    if ", otherwise" in text:
         return True
     every = [all_of(g) for c in program.checkpoints.values() for g in c.goals]
-    if any(_has_place_and_exception(goal) for goal in every if goal is not None):
-        return True
-    return False
+    return any(_has_place_and_exception(goal) for goal in every if goal is not None)
 
 
 def _has_place_and_exception(goal: AllOf) -> bool:
