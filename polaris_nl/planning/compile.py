@@ -9,18 +9,20 @@ from dataclasses import dataclass, field
 from polaris_nl.automaton.automaton import START, Automaton, Checkpoint, Transition
 from polaris_nl.automaton.validation import validate
 from polaris_nl.model.domain import KIND
-from polaris_nl.model.evaluate import after, applicable, ground_goals
+from polaris_nl.model.evaluate import after, applicable
 from polaris_nl.model.formula import And, Formula, Imply, Literal, Quantified, bind
 from polaris_nl.model.state import Mutexes, State
 from polaris_nl.model.wording import Wording
 from polaris_nl.model.world import World
 from polaris_nl.planning.ahead import BUDGET_S as AHEAD_S
 from polaris_nl.planning.ahead import other_ways
-from polaris_nl.planning.problems import Diagnosis, Place, inside, without_a_way
+from polaris_nl.planning.place import Place
+from polaris_nl.planning.problems import Diagnosis, inside, without_a_way
 from polaris_nl.planning.result import BranchingPlan, Problem, Segment, Status, Warning
 from polaris_nl.planning.segments import SegmentResult, Segments
 from polaris_nl.planning.tree import plan_tree
 from polaris_nl.planning.warnings import warnings_of
+from polaris_nl.planning.witnesses import grounded
 
 MOST_DETOURS = 3
 """Dead ends of one program that are planned around."""
@@ -150,7 +152,8 @@ class Compiler:
             insisted = automaton.checkpoints[earlier.target].action is not None
             if earlier.actions and not insisted and not cancelled():
                 state = earlier.before.after_event(transition.when, self._mutexes)
-                goals = ground_goals(automaton.checkpoints[failed].goals, state, self._world)
+                asked = automaton.checkpoints[failed].goals
+                goals = grounded(asked, state, self._world, self._segments, cancelled)
                 result = self._segments.solve(state, goals, AHEAD_S, cancelled)
                 if result.status == "solved":
                     yield earlier
@@ -196,8 +199,8 @@ class Compiler:
     ) -> Segment | None:
         if checkpoint.action is not None:
             return self._insisted(checkpoint, transition, state, work, cancelled)
-        goals = ground_goals(checkpoint.goals, state, self._world)
-        place = Place(automaton, checkpoint, transition, state, goals)
+        goals = grounded(checkpoint.goals, state, self._world, self._segments, cancelled)
+        place = Place(automaton, checkpoint, transition, state, goals, work.segments)
         problem = self._diagnosis.conflict(place, cancelled)
         if problem is None:
             result = self._solve(state, goals, cancelled)

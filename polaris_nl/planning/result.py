@@ -75,12 +75,24 @@ class Segment:
     after: State
 
 
+RepairKind = OneOf["split", "drop", "wait", "reorder", "change", "condition", "shape"]
+"""What a way out does: splits a checkpoint in steps, drops goals, waits for a person, changes the order
+of steps, asks for another thing, gives a way another condition, mends the program's shape."""
+
+
 @dataclass(frozen=True, slots=True)
 class Repair:
-    """A way out that has been tried: applying `edits` makes the problem go away."""
+    """A way out that has been tried: applying `edits` makes the problem go away.
+
+    Attributes:
+        text: an imperative, to go after "you could".
+        edits: applied together, by `polaris_nl.automaton.edits.apply_all`.
+        kind: what the edits do, the chief one where they do several things.
+    """
 
     text: str
     edits: tuple[Edit, ...]
+    kind: RepairKind = "drop"
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,8 +101,11 @@ class Problem:
 
     Attributes:
         text: a sentence that a person understands, with a way out.
-        cores: for a conflict, the minimal sets of goals that can't hold together, where known.
+        cores: the minimal sets of goals that can't be met together, the smallest first; of one
+            goal each where goals are out of reach by themselves.
         repairs: verified ways out, the best first.
+        start: facts with which there would be no problem, and which no edit of the program brings
+            about: somebody has to change the world, or tell the robot of it.
     """
 
     cause: Cause
@@ -99,6 +114,7 @@ class Problem:
     transition: str | None = None
     cores: tuple[tuple[Literal, ...], ...] = ()
     repairs: tuple[Repair, ...] = ()
+    start: tuple[Literal, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
