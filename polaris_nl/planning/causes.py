@@ -112,7 +112,8 @@ class Causes:
         if len(core) != 2:
             return False
         shared = set(core[0].args) & set(core[1].args)
-        return bool(shared) and core[0].args[:1] == core[1].args[:1]
+        by_rule = core[0] == core[1].negation or self.exclusive(core[0], core[1]) is not None
+        return bool(shared) and by_rule
 
     def _by_rule(self, core: Sequence[Literal], group: MutexGroup) -> str:
         held = any("hand" in p.predicate or p.predicate == "holding" for p in group.patterns)

@@ -8,16 +8,16 @@ from dataclasses import dataclass, field
 
 from polaris_nl.automaton.automaton import START, Automaton, Checkpoint, Transition
 from polaris_nl.automaton.validation import validate
-from polaris_nl.model.domain import KIND
 from polaris_nl.model.evaluate import after, applicable
-from polaris_nl.model.formula import And, Formula, Imply, Literal, Quantified, bind
+from polaris_nl.model.formula import Formula, Literal, bind
 from polaris_nl.model.state import Mutexes, State
 from polaris_nl.model.wording import Wording
 from polaris_nl.model.world import World
 from polaris_nl.planning.ahead import BUDGET_S as AHEAD_S
 from polaris_nl.planning.ahead import other_ways
+from polaris_nl.planning.faults import Faults
 from polaris_nl.planning.place import Place
-from polaris_nl.planning.problems import Diagnosis, inside, without_a_way
+from polaris_nl.planning.problems import Diagnosis, inside
 from polaris_nl.planning.result import BranchingPlan, Problem, Segment, Status, Warning
 from polaris_nl.planning.segments import SegmentResult, Segments
 from polaris_nl.planning.tree import plan_tree
@@ -64,6 +64,7 @@ class Compiler:
         self._world = world
         self._mutexes = mutexes
         self._segments = segments
+        self._faults = Faults(world, mutexes, segments, wording)
         self._diagnosis = Diagnosis(world, mutexes, segments, wording)
         self._wording = wording
 
@@ -75,14 +76,11 @@ class Compiler:
         started = time.perf_counter()
         faults = validate(automaton, self._world)
         if faults:
-            problems = tuple(Problem(f.cause, f.text, f.checkpoint, f.transition) for f in faults)
+            problems = self._faults.problems(automaton, faults, cancelled)
             # Names and shape come first: until they are right, the same conditional may not be the same.
             only_under = all(f.cause == "underspecified" for f in faults)
             status: Status = "underspecified" if only_under else "invalid"
             return BranchingPlan(status, {}, None, problems, (), _ms(started))
-        no_goals = tuple(_no_goals(automaton))
-        if no_goals:
-            return BranchingPlan("invalid", {}, None, no_goals, (), _ms(started))
         work = _Work()
         self._walk(automaton, ((START, self._world.initial),), work, cancelled)
         for _ in range(MOST_DETOURS):
@@ -198,7 +196,8 @@ class Compiler:
         cancelled: Callable[[], bool],
     ) -> Segment | None:
         if checkpoint.action is not None:
-            return self._insisted(checkpoint, transition, state, work, cancelled)
+            place = Place(automaton, checkpoint, transition, state, (), work.segments)
+            return self._insisted(place, work, cancelled)
         goals = grounded(checkpoint.goals, state, self._world, self._segments, cancelled)
         place = Place(automaton, checkpoint, transition, state, goals, work.segments)
         problem = self._diagnosis.conflict(place, cancelled)
@@ -213,16 +212,9 @@ class Compiler:
         work.problems.append(problem)
         return None
 
-    def _insisted(
-        self,
-        checkpoint: Checkpoint,
-        transition: Transition,
-        state: State,
-        work: _Work,
-        cancelled: Callable[[], bool],
-    ) -> Segment | None:
+    def _insisted(self, place: Place, work: _Work, cancelled: Callable[[], bool]) -> Segment | None:
         """A checkpoint whose action the user insists on: get to where it can be done, then do it."""
-        action = checkpoint.action
+        action, state = place.checkpoint.action, place.state
         assert action is not None
         operator = self._world.domain.operators[action.operator]
         needed: tuple[Formula, ...] = (bind(operator.precondition, operator.binding(action)),)
@@ -233,12 +225,10 @@ class Compiler:
             work.cancelled = True
             return None
         if result.status != "solved":
-            work.problems.append(
-                without_a_way(checkpoint, transition, action, result, self._wording)
-            )
+            work.problems.append(self._diagnosis.insisted(place, action, result, cancelled))
             return None
         whole = SegmentResult("solved", (*result.actions, action), result.optimal)
-        return self._made(transition, checkpoint, state, (), whole)
+        return self._made(place.transition, place.checkpoint, state, (), whole)
 
     def _solve(
         self, state: State, goals: tuple[Literal, ...], cancelled: Callable[[], bool]
@@ -278,37 +268,6 @@ class Compiler:
         states = {START: self._world.initial, **{k: s.after for k, s in work.segments.items()}}
         found = warnings_of(automaton, states, self._mutexes, self._world, self._wording)
         return (*work.notes, *found)
-
-
-def _no_goals(automaton: Automaton) -> Iterator[Problem]:
-    for checkpoint in automaton.checkpoints.values():
-        for goal in checkpoint.goals:
-            part = _no_goal(goal)
-            if part is None:
-                continue
-            why = "a goal is a fact, or one for all of a kind; ask for one of the facts in it"
-            if isinstance(part, Literal):
-                why = "the world's file says what kind a thing is, and no action changes it"
-            text = f"In {checkpoint.name}: {part} is no goal, as {why}."
-            yield Problem("invalid", text, checkpoint.id)
-    for transition in automaton.transitions.values():
-        for literal in transition.when:
-            if literal.predicate == KIND:
-                text = f"{literal} is no conditional, as what kind a thing is never changes."
-                yield Problem("invalid", text, transition.target, transition.id)
-
-
-def _no_goal(goal: Formula) -> Formula | None:
-    """The first part of a goal that asks for no fact, such as an `or`; None where all of it does."""
-    if isinstance(goal, Literal):
-        return goal if goal.predicate == KIND else None
-    if isinstance(goal, And):
-        return next((p for p in map(_no_goal, goal.parts) if p is not None), None)
-    if isinstance(goal, Imply):
-        return _no_goal(goal.conclusion)
-    if isinstance(goal, Quantified) and goal.quantifier == "forall":
-        return _no_goal(goal.body)
-    return goal
 
 
 def _status(work: _Work) -> Status:

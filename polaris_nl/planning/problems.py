@@ -76,6 +76,25 @@ class Diagnosis:
             return self._explained(place, cancelled, (core,))
         return self._undecided(place, result.reason, cancelled)
 
+    def insisted(
+        self,
+        place: Place,
+        action: Action,
+        result: SegmentResult,
+        cancelled: Callable[[], bool],
+    ) -> Problem:
+        """The problem of an action that the user insists on and that can't be done there."""
+        if result.status != "unsolvable":
+            return self._undecided(place, result.reason, cancelled)
+        repairs = self._repairs.of_action(place, action, cancelled)
+        text = f"there is no way to {self._wording.action(action)} then"
+        text = sentence(f'I can\'t do "{place.checkpoint.name}": {text}')
+        ways = "Say what it is for instead."
+        if repairs:
+            ways = sentence(f"you could say what it is for: {repairs[0].text}")
+        at = (place.checkpoint.id, place.transition.id)
+        return Problem("unreachable", f"{text} {ways}", *at, repairs=repairs)
+
     def _explained(
         self,
         place: Place,
@@ -150,7 +169,7 @@ class Diagnosis:
         return conflicts(place.goals, meets, [*alone, *dict.fromkeys(pairs)], limit, over)
 
     def _small_core(self, place: Place, cancelled: Callable[[], bool]) -> tuple[Literal, ...]:
-        """A conflict of few goals, where whether all can be met is too hard to say; nothing if there is none."""
+        """A conflict of few goals, where it is too hard to say if all can be met; nothing if none is found."""
         deadline = time.monotonic() + CORE_BUDGET_S
         meets = self._meets(place, cancelled)
         if len(place.goals) > LARGEST_CORE_SEARCH:
@@ -251,19 +270,3 @@ def inside(checkpoint: Checkpoint, transition: Transition | None, omitted: Check
     """The problem of a checkpoint that comes after one that is left out."""
     text = f'"{checkpoint.name}" waits for "{omitted.name}", which I can\'t do.'
     return Problem("inside", sentence(text), checkpoint.id, transition.id if transition else None)
-
-
-def without_a_way(
-    checkpoint: Checkpoint,
-    transition: Transition,
-    action: Action,
-    result: SegmentResult,
-    wording: Wording,
-) -> Problem:
-    """The problem of an action that the user insists on and that can't be done there."""
-    if result.status == "unsolvable":
-        text = f'I can\'t do "{checkpoint.name}": there is no way to {wording.action(action)} then.'
-        text = f"{sentence(text)} Say what it is for instead."
-        return Problem("unreachable", text, checkpoint.id, transition.id)
-    text = f"For {checkpoint.name}: {result.reason or 'The planning was broken off.'}"
-    return Problem("undecided", text, checkpoint.id, transition.id)

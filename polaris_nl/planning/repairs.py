@@ -7,6 +7,8 @@ from collections import Counter
 from collections.abc import Callable, Iterable
 
 from polaris_nl.automaton.edits import SetGoals
+from polaris_nl.model.domain import Action
+from polaris_nl.model.evaluate import effects
 from polaris_nl.model.formula import Goal
 from polaris_nl.model.state import Mutexes
 from polaris_nl.model.wording import Wording
@@ -58,6 +60,17 @@ class Repairs:
         return self._tried(
             [Repair(text, (SetGoals(place.checkpoint.id, kept),), "drop")], place, cancelled
         )
+
+    def of_action(
+        self, place: Place, action: Action, cancelled: Callable[[], bool]
+    ) -> tuple[Repair, ...]:
+        """What leads out of insisting on an action that can't be done: what it brings about, as goals."""
+        operator = self._world.domain.operators[action.operator]
+        made = effects(action, operator, place.state, self._world)
+        wanted = tuple(x for x in made if x.positive and x.args)
+        text = self._wording.goals(wanted)
+        goals = Repair(text, (SetGoals(place.checkpoint.id, wanted),), "change")
+        return self._tried([goals] if wanted else [], place, cancelled)
 
     def _tried(
         self, proposals: Iterable[Repair], place: Place, cancelled: Callable[[], bool]

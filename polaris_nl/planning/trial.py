@@ -53,7 +53,7 @@ class Trial:
         self,
         automaton: Automaton,
         edits: Sequence[Edit],
-        known: Mapping[str, Segment],
+        known: Mapping[str, Segment] | None,
         cancelled: Callable[[], bool],
     ) -> Outcome | None:
         """What a program would be after some edits; None where they don't fit it.
@@ -61,7 +61,8 @@ class Trial:
         Args:
             automaton: the program before.
             edits: applied one after the other, as one.
-            known: the segments of the program before that have a plan.
+            known: the segments of the program before that have a plan; None where nothing was planned
+                yet, and all has to be.
             cancelled: True ends the trial; what isn't planned by then counts as failed.
         """
         try:
@@ -72,7 +73,7 @@ class Trial:
         if faults:
             return Outcome(changed, faults=faults)
         failed: set[str] = set()
-        waiting = [(START, self._world.initial, False)]
+        waiting = [(START, self._world.initial, known is None)]
         while waiting:
             here, before, touched_before = waiting.pop()
             for transition in changed.outgoing(here):
@@ -88,7 +89,7 @@ class Trial:
                     end = self._end(target, state, cancelled)
                     if end is None:
                         failed.add(target.id)
-                elif target.id in known:
+                elif known is not None and target.id in known:
                     end = known[target.id].after
                 if end is not None:
                     waiting.append((target.id, end, touched))
