@@ -33,17 +33,20 @@ class OutOfReach:
     """Why one goal can't be met by itself.
 
     Attributes:
-        why: a clause, "only a person can bring it about that lunch has been acknowledged".
+        why: a clause, "I can't get to the attic"; none where only people bring the goal about.
         awaited: what people may bring about, and the goal can be met with; nothing where they can't.
         start: what would have to be different in the world, and neither the robot nor people change.
         advice: what the user may do that no edit does, or "".
+        only_people: whether no action of the robot brings the goal about; `lead` is what comes before that.
     """
 
     goal: Literal
-    why: str
+    why: str = ""
     awaited: tuple[Literal, ...] = ()
     start: tuple[Literal, ...] = ()
     advice: str = ""
+    only_people: bool = False
+    lead: str = ""
 
 
 class Causes:
@@ -144,15 +147,15 @@ class Causes:
         domain, fact = self._world.domain, self._wording.fact(goal)
         if not domain.achievers(goal):
             if domain.people_can_change(goal.predicate):
-                why = f"only a person can bring it about that {fact}"
-                return OutOfReach(goal, f"{self._ruled_out(place, goal)}{why}", (goal,))
+                lead = self._ruled_out(place, goal)
+                return OutOfReach(goal, awaited=(goal,), only_people=True, lead=lead)
             return OutOfReach(goal, f"nothing can change whether {fact}", start=(goal,))
         blame = self._blame(place, (goal,), cancelled)
         because = f"because {self._happened(place, blame, (goal,), cancelled)}, " if blame else ""
         lack = self._lack(place.state, goal)
         people = domain.people_can_change
         awaited = lack.roots if lack and all(people(x.predicate) for x in lack.roots) else ()
-        start = lack.roots if lack and not awaited else ()
+        start = lack.roots if lack and not awaited and self._would_do(place, goal, lack) else ()
         lost = [a for a in goal.args if self._lost(a, place.state)]
         if lost:
             what = self._wording.entity(lost[0])
@@ -164,6 +167,11 @@ class Causes:
         return OutOfReach(
             goal, f"{because}{self._missing(goal, lack, bool(blame))}", awaited, start
         )
+
+    def _would_do(self, place: Place, goal: Literal, lack: Lack) -> bool:
+        """Whether a goal could be met if only what it lacks were so."""
+        state = place.state.after_event(lack.roots, self._mutexes)
+        return self._segments.solve(state, (goal,), BUDGET_S).status == "solved"
 
     def _missing(self, goal: Literal, lack: Lack | None, blamed: bool) -> str:
         fact = self._wording.fact(goal)
@@ -215,7 +223,8 @@ class Causes:
         self, place: Place, blame: Blame, core: Sequence[Literal], cancelled: Callable[[], bool]
     ) -> str:
         if isinstance(blame, Segment):
-            return f'of what I did before, for "{place.automaton.checkpoints[blame.target].name}"'
+            name = place.automaton.checkpoints[blame.target].name
+            return f'of what I do for "{name}" before'
         before = next(b for event, b in place.back(self._world.initial) if event == blame)
         at_fault = [
             literal

@@ -10,7 +10,8 @@ here is about sets alone: whether goals can be met is asked of a function.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+import itertools
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
@@ -104,6 +105,29 @@ def quick_explain(goals: Sequence[T], may_be_met: Callable[[Sequence[T]], bool])
         return (*of_left, *of_right)
 
     return explain((), False, goals)
+
+
+def alike(reasons: Mapping[tuple[T, ...], str]) -> list[tuple[tuple[T, ...], int, str]]:
+    """Conflicting sets summed up: where all sets of one size among some goals have one reason, as one.
+
+    Args:
+        reasons: the conflicting sets, each with the reason for it.
+
+    Returns:
+        Goals, how many of them are too many, and why, in the order of the sets.
+    """
+    found: list[tuple[tuple[T, ...], int, str]] = []
+    left = list(reasons)
+    while left:
+        first = left[0]
+        group = [c for c in left if reasons[c] == reasons[first] and len(c) == len(first)]
+        union = tuple(dict.fromkeys(goal for core in group for goal in core))
+        whole = {frozenset(some) for some in itertools.combinations(union, len(first))}
+        if whole != {frozenset(core) for core in group}:
+            group, union = [first], first
+        found.append((union, len(first), reasons[first]))
+        left = [core for core in left if core not in group]
+    return found
 
 
 def _unexplored(

@@ -22,7 +22,7 @@ from polaris_nl.model.formula import (
     Quantified,
 )
 from polaris_nl.model.state import State
-from polaris_nl.model.world import World
+from polaris_nl.model.world import Entity, World
 
 
 @dataclass(frozen=True)
@@ -104,18 +104,26 @@ def with_entity(goal: Literal, old: str, new: str) -> Literal:
     return replace(goal, args=tuple(new if a == old else a for a in goal.args))
 
 
+PLACES = ("surface", "container")
+"""Types of which one may stand for any other: something can be put there as well."""
+
+
 def near(name: str, world: World, state: State) -> Iterator[str]:
-    """Other entities of the same type, the likest first: of its kinds, of its noun, in the same region."""
+    """What a person may take in the place of an entity: one of a kind or noun with it, or another place.
+
+    Yields:
+        Names, those with most in common first, and of these the ones in the same region.
+    """
     entity = world.entities.get(name)
     if entity is None:
         return
-    place = world.place_of(name, state)
+    region = world.place_of(name, state)
     kinds = {*entity.kinds, entity.noun or entity.name}
 
-    def unlike(other: str) -> tuple[int, int]:
-        known = world.entities[other]
-        shared = kinds & {*known.kinds, known.noun or known.name}
-        return (-len(shared), int(world.place_of(other, state) != place))
+    def shared(other: Entity) -> int:
+        return len(kinds & {*other.kinds, other.noun or other.name})
 
-    others = (e.name for e in world.of_type(entity.type) if e.name != name)
-    yield from sorted(others, key=unlike)
+    others = [e for e in world.of_type(entity.type) if e.name != name]
+    alike = [e for e in others if entity.type in PLACES or shared(e)]
+    alike.sort(key=lambda e: (-shared(e), world.place_of(e.name, state) != region))
+    yield from (e.name for e in alike)

@@ -15,11 +15,11 @@ from polaris_nl.model.domain import Action
 from polaris_nl.model.evaluate import leaves_a_choice
 from polaris_nl.model.formula import Literal
 from polaris_nl.model.state import Mutexes
-from polaris_nl.model.text import listed, sentence
+from polaris_nl.model.text import listed, sentence, supposed
 from polaris_nl.model.wording import Wording
 from polaris_nl.model.world import World
-from polaris_nl.planning.causes import Causes, OutOfReach
-from polaris_nl.planning.cores import Conflicts, Meets, conflicts
+from polaris_nl.planning.causes import NUMBERS, Causes, OutOfReach
+from polaris_nl.planning.cores import Conflicts, Meets, alike, conflicts
 from polaris_nl.planning.kinds import none_of
 from polaris_nl.planning.place import Place
 from polaris_nl.planning.proposals import Trouble
@@ -36,8 +36,10 @@ LARGEST_CORE_SEARCH = 8
 """Of more goals than this, one conflicting set is looked for beside those by a rule, not all."""
 SMALL = 3
 """Where it isn't decided if all goals can be met, sets of up to so many are tried."""
+MOST_REASONS = 30
+"""Conflicting sets for which a reason is looked for."""
 MOST_SAID = 3
-"""Conflicting sets that are put into words; of more, their number."""
+"""Conflicts that are put into words; of more, only that there are more."""
 
 
 class Diagnosis:
@@ -207,23 +209,28 @@ class Diagnosis:
         self,
         place: Place,
         reasons: Sequence[OutOfReach],
-        cores: Sequence[Sequence[Literal]],
+        cores: Sequence[tuple[Literal, ...]],
         cancelled: Callable[[], bool],
     ) -> str:
-        said = [self._together(place, core, cancelled) for core in cores[:MOST_SAID]]
-        if len(cores) > MOST_SAID:
-            said.append(f"the same goes for {len(cores) - MOST_SAID} more sets of them")
-        said.extend(dict.fromkeys(reason.why for reason in reasons))
+        because = {c: self._causes.together(place, c, cancelled) for c in cores[:MOST_REASONS]}
+        said = [self._together(goals, size, why) for goals, size, why in alike(because)[:MOST_SAID]]
+        if len(cores) > len(because) or len(alike(because)) > MOST_SAID:
+            said.append("and that isn't all of it")
+        people = [reason.goal for reason in reasons if reason.only_people]
+        if people:
+            facts = self._wording.events(people)
+            lead = next(r.lead for r in reasons if r.only_people)
+            said.append(f"{lead}only a person can bring it about that {facts}")
+        said.extend(dict.fromkeys(r.why for r in reasons if not r.only_people))
         if any(map(leaves_a_choice, place.checkpoint.goals)):
-            said[0] = f"whatever I take for it, it can't be done; to take the likest, {said[0]}"
+            said[0] = f"it doesn't work, whichever I take. For example, {said[0]}"
         return ". Besides, ".join(said)
 
-    def _together(
-        self, place: Place, core: Sequence[Literal], cancelled: Callable[[], bool]
-    ) -> str:
-        facts = listed([self._wording.fact(goal) for goal in core])
-        at_once = "at once" if len(core) == 2 else "all at once"
-        return f"it can't be that {facts} {at_once}{self._causes.together(place, core, cancelled)}"
+    def _together(self, goals: Sequence[Literal], size: int, why: str) -> str:
+        """That some goals can't be met at once, or no more than some of them."""
+        at_once = "at once" if len(goals) == 2 else "all at once"
+        nor = f", nor any {NUMBERS[size]} of these" if size < len(goals) else ""
+        return f"it can't be that {self._wording.events(goals)} {at_once}{nor}{why}"
 
     def _nothing_there(self, place: Place, cancelled: Callable[[], bool]) -> Problem:
         asked = place.checkpoint.goals
@@ -255,6 +262,13 @@ class Diagnosis:
         self, repairs: Sequence[Repair], reasons: Sequence[OutOfReach], several: bool
     ) -> str:
         advice = [sentence(reason.advice) for reason in reasons if reason.advice][:1]
+        advice.extend(
+            sentence(
+                f"I could if {listed([supposed(self._wording.fact(x)) for x in reason.start])}"
+            )
+            for reason in reasons
+            if reason.start and reason.goal not in reason.start
+        )
         if repairs:
             ways = [sentence(f"you could {repairs[0].text}")]
         elif several:

@@ -72,14 +72,15 @@ class Proposals:
     def __iter__(self) -> Iterator[Repair]:
         """All proposals, the best first."""
         yield from self._reordered()
-        yield from self._waits()
         if self._trouble.contradictory:
+            yield from self._waits()
             yield from self._drops()
             yield from self._changes()
             yield from self._splits()
         else:
-            yield from self._splits()
             yield from self._changes()
+            yield from self._waits()
+            yield from self._splits()
             yield from self._drops()
 
     def in_single_steps(self) -> Iterator[Repair]:
@@ -134,9 +135,12 @@ class Proposals:
             edits.append(InsertCheckpoint(fresh, transition.id, onward, awaited))
         else:
             edits.append(SetConditional(transition.id, awaited))
-        first = f"{self._wording.goals(setup)}, and " if setup else ""
-        text = f"{first}wait until {self._wording.events(awaited)}"
-        return Repair(self._and_leave_out(text, dropped), tuple(edits), "wait")
+        steps = [self._wording.goals(setup)] if setup else []
+        steps.append(f"wait until {self._wording.events(awaited)}")
+        if dropped:
+            steps.append(f"leave out {self._that(dropped)}")
+        text = steps[0] if len(steps) == 1 else f"{', '.join(steps[:-1])}, and {steps[-1]}"
+        return Repair(text, tuple(edits), "wait")
 
     def _splits(self) -> Iterator[Repair]:
         if not self._trouble.cores:
@@ -185,35 +189,26 @@ class Proposals:
                 yield Repair(text, (SetGoals(self._here.id, goals),), "drop")
 
     def _changes(self) -> Iterator[Repair]:
-        goals = [g for g in self._stuck if self._world.domain.achievers(g)]
-        if self._trouble.contradictory:
-            goals.extend(self._trouble.cores[0][::-1])
-        for goal in goals:
-            shared = goal.args[:1] if self._trouble.contradictory else goal.args
-            for name in shared:
-                yield from self._with_another(goal, name)
+        """The same with another thing or at another place: where one is out of reach, or meant twice."""
+        for reason in self._trouble.alone:
+            if self._world.domain.achievers(reason.goal) and (reason.advice or not reason.awaited):
+                for name in reason.goal.args:
+                    yield from self._with_another(reason.goal, name)
+        first = self._trouble.cores[0] if self._trouble.contradictory else ()
+        if first and first[0] != first[1].negation:
+            for goal in reversed(first):
+                for name in first[0].args:
+                    if name in first[1].args:
+                        yield from self._with_another(goal, name)
 
     def _with_another(self, goal: Literal, name: str) -> Iterator[Repair]:
-        state = self._trouble.place.state
-        others = [o for o in near(name, self._world, state) if self._is_like(name, o)]
-        for other in others[:MOST_OTHERS]:
+        others = near(name, self._world, self._trouble.place.state)
+        for other in itertools.islice(others, MOST_OTHERS):
             new = with_entity(goal, name, other)
             goals = self._portions.changed(goal, new)
             if goals is not None:
                 text = f"{self._wording.goal(new)} instead"
                 yield Repair(text, (SetGoals(self._here.id, goals),), "change")
-
-    def _is_like(self, name: str, other: str) -> bool:
-        """Whether a person may take one for another: a thing of the same kind, or any place."""
-        one, two = self._world.entities[name], self._world.entities[other]
-        if "region" not in self._world.domain.parents or one.type in (
-            "region",
-            "surface",
-            "container",
-        ):
-            return True
-        kinds = {*one.kinds, one.noun or one.name}
-        return not kinds.isdisjoint({*two.kinds, two.noun or two.name})
 
     def _reordered(self) -> Iterator[Repair]:
         """This step before the one that takes away what it needs."""

@@ -8,6 +8,7 @@ its actions lack shows the reason: a door, somebody's whereabouts, a thing that 
 from __future__ import annotations
 
 import itertools
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -57,6 +58,7 @@ class Relaxation:
         self.decided = len(self._actions) <= MOST_ACTIONS
         self._true = set(state.facts)
         self._false: set[Literal] = set()
+        self._mentions = Counter((f.predicate, a) for f in world.facts for a in f.args)
         self._by_effect: dict[Literal, list[_Ground]] = {}
         if self.decided:
             self._spread()
@@ -94,12 +96,17 @@ class Relaxation:
         domain = self._world.domain
         return domain.people_can_change(literal.predicate) or not domain.achievers(literal)
 
-    def _price(self, lack: Lack) -> tuple[int, int, int, tuple[Literal, ...]]:
-        """Few roots, rather by people, rather what was true at the start, and always the same ones."""
+    def _price(self, lack: Lack) -> tuple[object, ...]:
+        """Few roots, rather by people, rather what was true at the start, a way rather than a thing there.
+
+        Among equals, what is about the places that most is known of, and always the same one.
+        """
         people = self._world.domain.people_can_change
         fixed = sum(not people(x.predicate) for x in lack.roots)
         new = sum(x not in self._world.facts for x in lack.roots)
-        return len(lack.roots) + fixed, new, len(lack.through), lack.roots
+        elsewhere = not any(x.predicate == "robot-at" for x in lack.through)
+        known = sum(self._mentions[x.predicate, a] for x in lack.roots for a in x.args)
+        return len(lack.roots) + fixed, new, elsewhere, len(lack.through), -known, lack.roots
 
     def _gap(self, formula: Formula) -> tuple[Literal, ...] | None:
         """The fewest literals that a condition lacks; None where no literal would help."""
