@@ -16,7 +16,7 @@ NUMBERS = {2: "two", 3: "three", 4: "four", 5: "five"}
 
 
 def none_of(goal: Goal, wording: Wording) -> str:
-    """That there is none of what a goal is about: "there are no two cups", "there is no dish that is dirty"."""
+    """That there is none of what a goal is about: "there is no cutlery for that", "there is no dish that is dirty"."""
     found = next(_quantified(goal), None)
     if found is None:
         return "there is nothing that it could be about"
@@ -34,11 +34,14 @@ def none_of(goal: Goal, wording: Wording) -> str:
     noun = "thing" if noun == "object" else noun
     if several:
         number = NUMBERS.get(len(found.variables), str(len(found.variables)))
-        return f"there aren't {number} things that are a {noun}"
+        return f'there are fewer than {number} things of the kind "{noun}"'
     if found.quantifier == "exists":
-        return f"there is no {noun}" if kinds else "there is nothing that it could be about"
+        return (
+            f"there is no {noun} for that" if kinds else "there is nothing that it could be about"
+        )
     said = [s for p in parts if (s := _condition(p, variable.name, wording))]
-    return f"there is no {noun}{' that ' if said else ''}{listed(said)}"
+    none = "nothing" if noun == "thing" else f"no {noun}"
+    return f"there is {none}{' that ' if said else ''}{listed(said)}"
 
 
 def _quantified(goal: Goal) -> Iterator[Quantified]:

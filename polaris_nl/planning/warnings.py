@@ -69,7 +69,7 @@ class _Warnings:
         fixed = [x for x in never if not self._world.domain.robot_can_change(x.predicate)]
         if exclusive is not None:
             a, b = (self._wording.event(x) for x in exclusive)
-            text = f"{name} may never come: {a} and {b} exclude each other"
+            text = f"{name} may never come: that {a} and that {b} exclude each other"
         elif fixed:
             text = f"{name} can never come: nothing can change whether {self._events(fixed)}"
         elif never:

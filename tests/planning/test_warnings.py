@@ -24,12 +24,12 @@ PROGRAMS = {
             "held -> otherwise: (robot-at kitchen)",
         ],
         "excludes itself": [
-            "start -> both [(acknowledged lunchtime) (dismissed lunchtime)]: (robot-at hall)",
+            "start -> sent [(acknowledged lunchtime) (dismissed lunchtime)]: (robot-at hall)",
         ],
-        "in two places": ["start -> both [(at cup table) (in cup fridge)]: (robot-at hall)"],
+        "in two places": ["start -> brought [(at cup table) (in cup fridge)]: (robot-at hall)"],
         "walls don't move": ["start -> wall [(connected home kitchen)]: (robot-at hall)"],
         "waits for itself": ["start -> full [(is-full tray)]: (robot-at hall)"],
-        "waits for itself to go": ["start -> there [(robot-at kitchen)]: (robot-at hall)"],
+        "waits for itself to go": ["start -> kitchen [(robot-at kitchen)]: (robot-at hall)"],
         "the second asks for more": [
             LUNCH,
             "alerted -> one [(acknowledged lunchtime)]: (robot-at hall)",
