@@ -16,7 +16,7 @@ NUMBERS = {2: "two", 3: "three", 4: "four", 5: "five"}
 
 
 def none_of(goal: Goal, wording: Wording) -> str:
-    """That there is none of what a goal is about: "there is no cutlery for that", "there is no dish that is dirty"."""
+    """That there is none of what a goal is about: "there is no dish that is dirty"."""
     found = next(_quantified(goal), None)
     if found is None:
         return "there is nothing that it could be about"

@@ -10,7 +10,7 @@ from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from polaris_nl.model.domain import conjuncts
-from polaris_nl.model.evaluate import choices, instances_of, leaves_a_choice
+from polaris_nl.model.evaluate import instances_of
 from polaris_nl.model.formula import (
     And,
     Equal,
@@ -21,6 +21,7 @@ from polaris_nl.model.formula import (
     Not,
     Quantified,
 )
+from polaris_nl.model.goals import choices, leaves_a_choice
 from polaris_nl.model.state import State
 from polaris_nl.model.world import Entity, World
 

@@ -12,8 +12,8 @@ from collections.abc import Callable, Sequence
 
 from polaris_nl.automaton.automaton import Checkpoint, Transition
 from polaris_nl.model.domain import Action
-from polaris_nl.model.evaluate import leaves_a_choice
 from polaris_nl.model.formula import Literal
+from polaris_nl.model.goals import leaves_a_choice
 from polaris_nl.model.state import Mutexes
 from polaris_nl.model.text import listed, sentence, supposed
 from polaris_nl.model.wording import Wording

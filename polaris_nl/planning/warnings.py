@@ -6,8 +6,8 @@ import itertools
 from collections.abc import Iterator, Mapping, Sequence
 
 from polaris_nl.automaton.automaton import Automaton, Transition
-from polaris_nl.model.evaluate import choices
 from polaris_nl.model.formula import Literal, Quantified
+from polaris_nl.model.goals import choices
 from polaris_nl.model.state import Mutexes, State
 from polaris_nl.model.text import listed, sentence
 from polaris_nl.model.wording import Wording

@@ -10,8 +10,8 @@ import itertools
 import time
 from collections.abc import Callable, Sequence
 
-from polaris_nl.model.evaluate import choices, ground_goals, leaves_a_choice
 from polaris_nl.model.formula import Goal, Literal
+from polaris_nl.model.goals import choices, ground_goals, leaves_a_choice
 from polaris_nl.model.state import State
 from polaris_nl.model.world import World
 from polaris_nl.planning.segments import Segments

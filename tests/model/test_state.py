@@ -6,8 +6,9 @@ import pytest
 
 from polaris_nl.model.domain import Action
 from polaris_nl.model.errors import FormatError
-from polaris_nl.model.evaluate import after, applicable, effects, ground_goals, holds
+from polaris_nl.model.evaluate import after, applicable, effects, holds
 from polaris_nl.model.formula import Literal, parse_formula, parse_literal
+from polaris_nl.model.goals import ground_goals
 from polaris_nl.model.state import Mutexes, MutexGroup, State
 from polaris_nl.model.world import World
 

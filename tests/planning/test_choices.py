@@ -7,8 +7,9 @@ from dataclasses import replace
 import pytest
 
 from polaris_nl.automaton.edits import apply_all
-from polaris_nl.model.evaluate import choices, holds
+from polaris_nl.model.evaluate import holds
 from polaris_nl.model.formula import Literal, parse_formula
+from polaris_nl.model.goals import choices
 from polaris_nl.planning.planner import Planner
 
 from .conftest import actions, facts, only_problem, program
