@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from threading import Lock
 
 from polaris_nl.automaton.automaton import Transition
 from polaris_nl.model.domain import Operator, effect_literals
@@ -23,6 +24,8 @@ BUDGET_S = 1.0
 """How long it may take to find out if goals could be met at one earlier point, in seconds."""
 LOOK_BACK = 8
 """How many earlier points are looked at."""
+MEMORY = 200
+"""What goals lack that is remembered, since a problem is met again with every edit elsewhere."""
 NUMBERS = ("no", "one", "two", "three", "four", "five", "six")
 
 Blame = Transition | Segment
@@ -60,6 +63,8 @@ class Causes:
         self._segments = segments
         self._wording = wording
         self._projection = Projection(world, mutexes)
+        self._lock = Lock()
+        self._lacks: dict[tuple[State, Literal], Lack | None] = {}
 
     def alone(
         self, place: Place, goals: Sequence[Literal], cancelled: Callable[[], bool]
@@ -198,8 +203,17 @@ class Causes:
         return ""
 
     def _lack(self, state: State, goal: Literal) -> Lack | None:
+        key = (state, goal)
+        with self._lock:
+            if key in self._lacks:
+                return self._lacks[key]
         world, facts = self._projection.of(state, (goal,))
-        return Relaxation(world, facts).lack(goal)
+        lack = Relaxation(world, facts).lack(goal)
+        with self._lock:
+            self._lacks[key] = lack
+            while len(self._lacks) > MEMORY:
+                del self._lacks[next(iter(self._lacks))]
+        return lack
 
     def _lost(self, entity: str, state: State) -> bool:
         known = self._world.entities.get(entity)

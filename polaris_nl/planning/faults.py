@@ -23,12 +23,15 @@ from polaris_nl.model.state import ANY, Mutexes
 from polaris_nl.model.text import sentence
 from polaris_nl.model.wording import Wording
 from polaris_nl.model.world import World
+from polaris_nl.planning.budget import within
 from polaris_nl.planning.result import Problem, Repair
 from polaris_nl.planning.segments import Segments
 from polaris_nl.planning.trial import Outcome, Trial
 
 MOST = 3
 """Ways out of one fault that are offered at most."""
+BUDGET_S = 2.0
+"""How long ways out of one fault are looked for, in seconds."""
 MOST_NAMES = 3
 """Names that are tried in the place of one that isn't known."""
 
@@ -61,11 +64,12 @@ class Faults:
         faults: Sequence[Fault],
         cancelled: Callable[[], bool],
     ) -> Problem:
+        over = within(BUDGET_S, cancelled)
         repairs: list[Repair] = []
         for repair in self._proposals(automaton, fault):
-            if cancelled() or len(repairs) == MOST:
+            if over() or len(repairs) == MOST:
                 break
-            outcome = self._trial.of(automaton, repair.edits, None, cancelled)
+            outcome = self._trial.of(automaton, repair.edits, None, over)
             if outcome is not None and _mends(outcome, fault, faults):
                 repairs.append(repair)
         text = fault.text

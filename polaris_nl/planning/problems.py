@@ -7,7 +7,6 @@ sets of goals. What isn't decided in its time is said to be undecided, and never
 from __future__ import annotations
 
 import itertools
-import time
 from collections.abc import Callable, Sequence
 
 from polaris_nl.automaton.automaton import Checkpoint, Transition
@@ -18,6 +17,7 @@ from polaris_nl.model.state import Mutexes
 from polaris_nl.model.text import listed, sentence, supposed
 from polaris_nl.model.wording import Wording
 from polaris_nl.model.world import World
+from polaris_nl.planning.budget import within
 from polaris_nl.planning.causes import NUMBERS, Causes, OutOfReach
 from polaris_nl.planning.cores import Conflicts, Meets, alike, conflicts
 from polaris_nl.planning.kinds import none_of
@@ -30,6 +30,8 @@ from polaris_nl.planning.witnesses import hopeless, nothing_to_choose
 
 CORE_BUDGET_S = 3.0
 """How long minimal conflicting sets of one checkpoint are looked for, in seconds."""
+REASONS_S = 2.0
+"""How long the reasons for them are looked for, in seconds."""
 SOLVE_S = 1.0
 """How long one set of goals may take, in seconds."""
 LARGEST_CORE_SEARCH = 8
@@ -104,22 +106,24 @@ class Diagnosis:
         known: Sequence[tuple[Literal, ...]] = (),
     ) -> Problem:
         found = self._conflicts(place, cancelled, known)
-        alone = tuple(core[0] for core in found.cores if len(core) == 1)
-        said = self._said(place, found.cores)
-        if not said:
+        if found is None:
             return self._undecided(place, "", cancelled)
+        alone = tuple(core[0] for core in found.cores if len(core) == 1)
+        # That all of them can't be met is certain, even if there was no time to say which.
+        said = self._said(place, found.cores) or (place.goals,)
         cores = tuple(core for core in said if len(core) > 1)
-        reasons = self._causes.alone(place, alone, cancelled)
+        over = within(REASONS_S, cancelled)
+        reasons = self._causes.alone(place, alone, over)
         trouble = Trouble(
             place,
             reasons,
             cores,
             found.corrections,
             bool(cores) and self._causes.same_thing_in_two_places(cores[0]),
-            self._causes.used_up(place, said[0], cancelled),
+            self._causes.used_up(place, said[0], over),
         )
+        why = self._why(place, reasons, cores, over)
         repairs = self._repairs.of(trouble, cancelled)
-        why = self._why(place, reasons, cores, cancelled)
         text = sentence(f'I can\'t do "{place.checkpoint.name}": {why}')
         start = tuple(dict.fromkeys(x for reason in reasons for x in reason.start))
         return Problem(
@@ -150,37 +154,33 @@ class Diagnosis:
         place: Place,
         cancelled: Callable[[], bool],
         known: Sequence[tuple[Literal, ...]] = (),
-    ) -> Conflicts[Literal]:
-        deadline = time.monotonic() + CORE_BUDGET_S
-        meets = self._meets(place, cancelled)
-
-        def over() -> bool:
-            return cancelled() or time.monotonic() > deadline
-
+    ) -> Conflicts[Literal] | None:
+        """All conflicting sets, as far as they are found in time; None where the work was cancelled."""
+        over = within(CORE_BUDGET_S, cancelled)
         # A goal that can't be met by itself makes every set with it a conflict that says nothing new.
         alone: list[tuple[Literal, ...]] = []
         for goal in place.goals:
-            answer = True if place.state.holds(goal) else meets((goal,))
-            if answer is None:
-                return Conflicts((), (), False)
-            if not answer:
-                alone.append((goal,))
+            if not place.state.holds(goal) and not over():
+                status = self._segments.solve(place.state, (goal,), SOLVE_S, cancelled).status
+                if status == "cancelled":
+                    return None
+                if status == "unsolvable":
+                    alone.append((goal,))
         single = {goal for (goal,) in alone}
         pairs = (c for c in (*known, *self._by_rule(place)) if single.isdisjoint(c))
         limit = 0 if known else 1 if len(place.goals) > LARGEST_CORE_SEARCH else None
-        return conflicts(place.goals, meets, [*alone, *dict.fromkeys(pairs)], limit, over)
+        surely = [*alone, *dict.fromkeys(pairs)]
+        return conflicts(place.goals, self._meets(place, over), surely, limit, over)
 
     def _small_core(self, place: Place, cancelled: Callable[[], bool]) -> tuple[Literal, ...]:
         """A conflict of few goals, where it is too hard to say if all can be met; nothing if none is found."""
-        deadline = time.monotonic() + CORE_BUDGET_S
-        meets = self._meets(place, cancelled)
+        over = within(CORE_BUDGET_S, cancelled)
+        meets = self._meets(place, over)
         if len(place.goals) > LARGEST_CORE_SEARCH:
             return ()
         for size in range(1, SMALL + 1):
             for some in itertools.combinations(place.goals, size):
-                if time.monotonic() > deadline or cancelled():
-                    return ()
-                answer = meets(some)
+                answer = None if over() else meets(some)
                 if answer is False:
                     return some
                 if answer is None and size == 1:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections import Counter
 from collections.abc import Callable, Iterable
 
@@ -13,6 +12,7 @@ from polaris_nl.model.formula import Goal
 from polaris_nl.model.state import Mutexes
 from polaris_nl.model.wording import Wording
 from polaris_nl.model.world import World
+from polaris_nl.planning.budget import within
 from polaris_nl.planning.place import Place
 from polaris_nl.planning.proposals import Proposals, Trouble
 from polaris_nl.planning.result import Repair
@@ -75,12 +75,9 @@ class Repairs:
     def _tried(
         self, proposals: Iterable[Repair], place: Place, cancelled: Callable[[], bool]
     ) -> tuple[Repair, ...]:
-        deadline = time.monotonic() + BUDGET_S
+        over = within(BUDGET_S, cancelled)
         found: list[tuple[int, Repair]] = []
         kinds: Counter[str] = Counter()
-
-        def over() -> bool:
-            return cancelled() or time.monotonic() > deadline
 
         for repair in proposals:
             if over() or len(found) == MOST:

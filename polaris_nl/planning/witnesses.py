@@ -7,13 +7,13 @@ in the world's file among equals, so that plans don't flicker.
 from __future__ import annotations
 
 import itertools
-import time
 from collections.abc import Callable, Sequence
 
 from polaris_nl.model.formula import Goal, Literal
 from polaris_nl.model.goals import choices, ground_goals, leaves_a_choice
 from polaris_nl.model.state import State
 from polaris_nl.model.world import World
+from polaris_nl.planning.budget import within
 from polaris_nl.planning.segments import Segments
 
 MOST_CHOICES = 500
@@ -52,10 +52,10 @@ def grounded(
     if not ways or all(map(state.holds, ways[0])):
         return ways[0] if ways else ()
     best, cost = ways[0], None
-    deadline = time.monotonic() + TOTAL_S
+    over = within(TOTAL_S, cancelled)
     for number, way in enumerate(ways):
         enough = cost is not None and (cost == 1 or number >= MOST_TRIED)
-        if enough or cancelled() or time.monotonic() > deadline:
+        if enough or over():
             break
         result = segments.solve(state, way, BUDGET_S, cancelled)
         if result.status == "solved" and (cost is None or len(result.actions) < cost):
@@ -78,9 +78,9 @@ def hopeless(
 ) -> bool:
     """Whether it is certain that no choice of things leads to a plan (what was found out is remembered)."""
     ways = list(itertools.islice(choices(goals, state, world), MOST_CHOICES + 1))
-    deadline = time.monotonic() + TOTAL_S
+    over = within(TOTAL_S, cancelled)
     for way in ways:
-        if cancelled() or time.monotonic() > deadline:
+        if over():
             return False
         if segments.solve(state, way, BUDGET_S, cancelled).status != "unsolvable":
             return False
