@@ -65,16 +65,20 @@ class Portions:
             found.update(dict.fromkeys(kept if whole is None else (whole,)))
         return tuple(found)
 
+    def said(self, wanted: Collection[Literal]) -> tuple[Goal, ...]:
+        """The same goals for putting into words: the things that were chosen, where there was a choice."""
+        found: dict[Goal, None] = {}
+        for goal in self.only(wanted):
+            chosen = next((some for part, some in self.parts if part == goal), ())
+            found.update(dict.fromkeys(chosen if leaves_a_choice(goal) else (goal,)))
+        return tuple(found)
+
     def changed(self, old: Literal, new: Literal) -> tuple[Goal, ...] | None:
         """The goals with another literal in the place of one; None where no goal is that literal."""
         goals = [goal for goal, _ in self.parts]
         if old not in goals or new in goals:
             return None
         return tuple(new if goal == old else goal for goal in goals)
-
-    def is_choice(self, literal: Literal) -> bool:
-        """Whether a literal is there because of a thing that was chosen."""
-        return any(leaves_a_choice(goal) for goal, some in self.parts if literal in some)
 
     def _but(self, goal: Goal, gone: Sequence[Literal]) -> Goal | None:
         """A goal for all of a kind, with exceptions; None where it has another form."""

@@ -176,7 +176,7 @@ class Proposals:
             edits.append(edit)
             program, on = apply(program, edit), edit.onward
         edits.append(SetGoals(self._here.id, self._portions.only(steps[-1])))
-        said = [self._wording.goals(self._portions.only(step)) for step in steps]
+        said = [self._wording.goals(self._portions.said(step)) for step in steps]
         middle = "".join(f", then {words}" for words in said[1:-1])
         text = f"{said[0]} first{middle}, and then {said[-1]}"
         return Repair(self._and_leave_out(text, dropped), tuple(edits), "split")
