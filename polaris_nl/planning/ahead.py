@@ -157,7 +157,11 @@ class Ahead:
             operators[name] = Operator(
                 name, (), And((now, *stage.goals)), And((now.negation, then, *event))
             )
-        return replace(world.domain, predicates=predicates, operators=operators)
+        # Conditions of operators may name constants only.
+        constants = {e.name: e.type for e in world.entities.values()}
+        return replace(
+            world.domain, predicates=predicates, operators=operators, constants=constants
+        )
 
     def _event(self, when: Sequence[Literal], world: World) -> list[Formula] | None:
         """What a conditional changes, as effects: the same as `State.after_event`."""

@@ -116,7 +116,7 @@ def _grounded(parts: dict[str, ModuleType], task: Any) -> Any:
         parts["normalize"].normalize(task)
         return parts["main"].pddl_to_sas(task)
     except (Exception, SystemExit) as error:
-        raise PlanningError(f"The planner can't use this domain: {_first_line(error)}.") from error
+        raise PlanningError(f"The planner can't use this domain: {_reason(error)}.") from error
 
 
 def _is_plain(sas: Any) -> bool:
@@ -171,7 +171,7 @@ def _parse(parts: dict[str, ModuleType], domain: str, problem: str) -> Any:
             read(domain.splitlines(keepends=True)), read(problem.splitlines(keepends=True))
         )
     except (Exception, SystemExit) as error:
-        raise PlanningError(f"The planner can't read this domain: {_first_line(error)}.") from error
+        raise PlanningError(f"The planner can't read this domain: {_reason(error)}.") from error
 
 
 def _is_unsolvable(sas: Any) -> bool:
@@ -180,6 +180,9 @@ def _is_unsolvable(sas: Any) -> bool:
     return bool(names and names[0][:1] == ["Atom dummy(val1)"] and sas.goal.pairs == [(0, 1)])
 
 
-def _first_line(error: BaseException) -> str:
-    lines = [line for line in str(error).splitlines() if line.strip()]
-    return lines[0].strip(" .!") if lines else type(error).__name__
+def _reason(error: BaseException) -> str:
+    """What the translator says, without the places in its own code that it lists first."""
+    lines = [line.strip() for line in str(error).splitlines() if line.strip()]
+    places = [n for n, line in enumerate(lines) if line.startswith("->")]
+    said = lines[places[-1] + 1 :] if places else lines[:1]
+    return " ".join(said).strip(" .!") or type(error).__name__
