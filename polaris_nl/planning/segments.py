@@ -9,7 +9,7 @@ from typing import Literal as OneOf
 
 from polaris_nl.automaton.program import parse_action
 from polaris_nl.model.domain import Action
-from polaris_nl.model.errors import PlanningError
+from polaris_nl.model.errors import FormatError, PlanningError
 from polaris_nl.model.evaluate import holds
 from polaris_nl.model.formula import Formula
 from polaris_nl.model.state import Mutexes, State
@@ -149,12 +149,16 @@ class Segments:
                 found = self._attempts(task, deadline, sought_s, None, cancelled)
                 checked = self._checked(state, goals, found)
             if checked is None:
-                return SegmentResult("undecided", reason="The plan that was found doesn't work.")
+                reason = "The plan that was found doesn't work; try again, or undo."
+                return SegmentResult("undecided", reason=reason)
             if checked.status == "undecided":
-                reason = f"No plan was found in {budget_s:g} seconds, and none was ruled out."
-                return replace(checked, reason=reason)
+                reason = (
+                    f"No plan was found in {budget_s:g} seconds, and none was ruled out; try again, or"
+                    f" split the step in two."
+                )
+                return replace(checked, reason=checked.reason or reason)
             return checked
-        except PlanningError as error:
+        except (PlanningError, FormatError) as error:
             return SegmentResult("undecided", reason=str(error))
 
     def _search(
@@ -198,7 +202,7 @@ class Segments:
         actions = tuple(parse_action(text) for text in found.plan)
         if before is not None and optimal and len(before.actions) == len(actions):
             actions = before.actions
-        return SegmentResult(found.status, actions, optimal, sought_s=sought_s)
+        return SegmentResult(found.status, actions, optimal, found.reason, sought_s=sought_s)
 
     def _checked(
         self, state: State, goals: Sequence[Formula], found: SegmentResult

@@ -37,7 +37,7 @@ class Simulator:
         steps = []
         for action in actions:
             ground = self._ground(action)
-            if not holds(ground.precondition, state, self._world):
+            if ground is None or not holds(ground.precondition, state, self._world):
                 return None
             changes = ground.changes
             if changes is None:
@@ -52,10 +52,13 @@ class Simulator:
             steps.append(Step(state, tuple(removed), tuple(sorted(added))))
         return tuple(steps)
 
-    def _ground(self, action: Action) -> _Ground:
+    def _ground(self, action: Action) -> _Ground | None:
+        """The action's conditions and changes; None where there is no such action."""
         known = self._known.get(action)
         if known is None:
-            operator = self._world.domain.operators[action.operator]
+            operator = self._world.domain.operators.get(action.operator)
+            if operator is None or len(operator.parameters) != len(action.args):
+                return None
             binding = operator.binding(action)
             parts = tuple(conjuncts(bind(operator.effect, binding)))
             literals = tuple(p for p in parts if isinstance(p, Literal))
