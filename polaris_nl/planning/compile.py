@@ -120,7 +120,9 @@ class Compiler:
             pass
         better = self._looked_ahead(errand, better)
         plan = self._plan(automaton, better, started)
-        if not better.cancelled and not cancelled() and plan != quick:
+        # No screen is drawn again for an offer alone: it is known now, and comes with the next plan.
+        same = plan.segments == quick.segments and plan.problems == quick.problems
+        if not better.cancelled and not cancelled() and not same:
             yield Draft(plan, True, better.plain())
 
     def _walk(self, errand: Errand, work: Work) -> Iterator[None]:

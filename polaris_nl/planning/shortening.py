@@ -8,11 +8,13 @@ from dataclasses import replace
 from polaris_nl.automaton.automaton import START
 from polaris_nl.model.world import World
 from polaris_nl.planning.result import Segment
-from polaris_nl.planning.shorter import Shortcut, Shortcuts
+from polaris_nl.planning.shorter import JOINT_S, Shortcut, Shortcuts
 from polaris_nl.planning.walk import Errand, Walker, Work
 
 BUDGET_S = 3.0
 """Seconds in which a whole program is looked through."""
+QUICK_S = 0.02
+"""The same where a plan is waited for: enough for what one edit has changed in most programs."""
 
 
 class Shortening:
@@ -26,10 +28,11 @@ class Shortening:
     def shortened(self, errand: Errand, work: Work) -> Work:
         """The work with every shortcut that costs nothing, and with the offers of others.
 
-        In a hurry only what is known already is used.
+        In a hurry hardly more than what is known already is used.
         """
         automaton = errand.automaton
-        deadline = time.monotonic() + BUDGET_S
+        budget_s = QUICK_S if errand.quick else BUDGET_S
+        deadline = time.monotonic() + budget_s
 
         def over() -> bool:
             return errand.cancelled() or time.monotonic() > deadline
@@ -45,7 +48,7 @@ class Shortening:
             ]
             if segment is None or not onward or checkpoint in work.ahead:
                 continue
-            shortcut = self._shortcuts.at(segment, onward, over, errand.quick)
+            shortcut = self._shortcuts.at(segment, onward, over, min(budget_s, JOINT_S))
             if shortcut is None:
                 continue
             if shortcut.longer:
