@@ -54,6 +54,15 @@ class PlanEdge:
 
 
 @dataclass(frozen=True, slots=True)
+class Step:
+    """What one action leads to: the state after it, and how that differs from the one before."""
+
+    state: State
+    removed: tuple[Literal, ...]
+    added: tuple[Literal, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Segment:
     """The actions between a checkpoint and the next.
 
@@ -62,6 +71,7 @@ class Segment:
         optimal: whether no plan with fewer actions exists from `before` to the goals.
         before: the state that the segment starts from, its conditional already true.
         after: the state at its end.
+        steps: what each action leads to; follows from the rest.
     """
 
     transition: str
@@ -73,6 +83,7 @@ class Segment:
     optimal: bool
     before: State
     after: State
+    steps: tuple[Step, ...] = field(default=(), compare=False, repr=False)
 
 
 RepairKind = OneOf["split", "drop", "wait", "reorder", "change", "condition", "shape"]
@@ -119,10 +130,15 @@ class Problem:
 
 @dataclass(frozen=True, slots=True)
 class Warning:
-    """Something legal that may not be meant, such as a conditional that holds already."""
+    """Something legal that may not be meant, such as a conditional that holds already.
+
+    Attributes:
+        repairs: changes that would mend it, each tried, the best first.
+    """
 
     text: str
     transition: str | None = None
+    repairs: tuple[Repair, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ from polaris_nl.model.state import Mutexes, State
 from polaris_nl.model.world import World
 from polaris_nl.planning.result import Segment
 from polaris_nl.planning.segments import Segments
-from polaris_nl.planning.witnesses import grounded, nothing_to_choose
+from polaris_nl.planning.witnesses import grounded
 
 BUDGET_S = 1.0
 """How long one segment of a way out may take, in seconds."""
@@ -105,11 +105,12 @@ class Trial:
             goals = (bind(operator.precondition, operator.binding(checkpoint.action)),)
         else:
             try:
-                if nothing_to_choose(checkpoint.goals, state, self._world):
-                    return None
-                goals = grounded(checkpoint.goals, state, self._world, self._segments, cancelled)
+                found = grounded(checkpoint.goals, state, self._world, self._segments, cancelled)
             except FormatError:
                 return None
+            if found is None:
+                return None
+            goals = found
         actions: tuple[Action, ...] = ()
         if not all(holds(goal, state, self._world) for goal in goals):
             result = self._segments.solve(state, goals, BUDGET_S, cancelled)

@@ -32,10 +32,10 @@ def grounded(
     world: World,
     segments: Segments,
     cancelled: Callable[[], bool],
-) -> tuple[Literal, ...]:
+) -> tuple[Literal, ...] | None:
     """The literals to plan for: all that goals ask for, the best things chosen where they leave a choice.
 
-    Where no choice leads to a plan, the one of which most holds already stands for all. Nothing, where
+    Where no choice leads to a plan, the one of which most holds already stands for all. None, where
     there is nothing to choose from.
 
     Args:
@@ -50,7 +50,7 @@ def grounded(
     ways = list(itertools.islice(choices(goals, state, world), MOST_CHOICES))
     ways.sort(key=lambda way: sum(not state.holds(x) for x in way))
     if not ways or all(map(state.holds, ways[0])):
-        return ways[0] if ways else ()
+        return ways[0] if ways else None
     best, cost = ways[0], None
     over = within(TOTAL_S, cancelled)
     for number, way in enumerate(ways):
