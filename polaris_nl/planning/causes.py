@@ -115,6 +115,14 @@ class Causes:
         """The rule by which two goals exclude each other, or None."""
         return self._mutexes.exclusive(a, b) if a.positive and b.positive else None
 
+    def excluded(self, goals: Sequence[Literal]) -> tuple[Literal, ...]:
+        """The goals that an earlier one excludes by a rule."""
+        kept: list[Literal] = []
+        for goal in goals:
+            if goal.negation not in kept and not any(self.exclusive(goal, k) for k in kept):
+                kept.append(goal)
+        return tuple(g for g in goals if g not in kept)
+
     def same_thing_in_two_places(self, core: Sequence[Literal]) -> bool:
         """Whether goals want one thing in two places, or something and its opposite."""
         if len(core) != 2:

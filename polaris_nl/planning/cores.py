@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
-MOST_STEPS = 20_000
+MOST_STEPS = 2_000
 """How many sets are looked at for the next one to try."""
 
 T = TypeVar("T")
@@ -68,7 +68,8 @@ def conflicts(
         return answer
 
     while True:
-        seed = _unexplored(goals, cores, met)
+        seed, certain = _unexplored(goals, cores, met)
+        exact = exact and certain
         if seed is None:
             break
         if over() or (enough is not None and len(cores) - given >= enough):
@@ -132,13 +133,20 @@ def alike(reasons: Mapping[tuple[T, ...], str]) -> list[tuple[tuple[T, ...], int
 
 def _unexplored(
     goals: Sequence[T], cores: Sequence[frozenset[T]], met: Sequence[frozenset[T]]
-) -> tuple[T, ...] | None:
+) -> tuple[tuple[T, ...] | None, bool]:
     """A largest set of goals not known to be a conflict, nor part of what can be met; None if none is left.
 
     What is left out has to hit every core, and must not hold all that a met set leaves out. The
     least such sets are all found by branching over the goals of a core that isn't hit yet.
+
+    Returns:
+        The set, and whether it is surely a largest one, or surely none is left.
     """
     whole = frozenset(goals)
+
+    def fits(out: frozenset[T]) -> bool:
+        return not any(whole - out <= some for some in met)
+
     best: frozenset[T] | None = None
     waiting: list[frozenset[T]] = [frozenset()]
     seen: set[frozenset[T]] = set()
@@ -147,7 +155,7 @@ def _unexplored(
         if out in seen or (best is not None and len(out) >= len(best)):
             continue
         seen.add(out)
-        if any(whole - out <= some for some in met):
+        if not fits(out):
             continue
         core = next((c for c in cores if not c & out), None)
         if core is None:
@@ -155,7 +163,13 @@ def _unexplored(
         else:
             # The last goal of a core is the first to be left out: what was said first is kept.
             waiting.extend(out | {goal} for goal in _ordered(core, goals))
-    return None if best is None else tuple(g for g in goals if g not in best)
+    if best is None:
+        return None, not waiting
+    for goal in goals:
+        fewer = best - {goal}
+        if waiting and all(core & fewer for core in cores) and fits(fewer):
+            best = fewer
+    return tuple(g for g in goals if g not in best), not waiting
 
 
 def _ordered(some: Iterable[T], goals: Sequence[T]) -> tuple[T, ...]:

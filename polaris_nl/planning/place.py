@@ -8,7 +8,8 @@ from dataclasses import dataclass, field
 from polaris_nl.automaton.automaton import Automaton, Checkpoint, Transition
 from polaris_nl.model.formula import Literal
 from polaris_nl.model.state import State
-from polaris_nl.planning.result import Segment
+from polaris_nl.model.text import sentence
+from polaris_nl.planning.result import Problem, Segment
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,3 +45,9 @@ class Place:
             if earlier.actions:
                 yield earlier, earlier.before
             transition = self.automaton.incoming(earlier.target)
+
+
+def inside(checkpoint: Checkpoint, transition: Transition | None, omitted: Checkpoint) -> Problem:
+    """The problem of a checkpoint that comes after one that is left out."""
+    text = f'"{checkpoint.name}" waits for "{omitted.name}", which I can\'t do.'
+    return Problem("inside", sentence(text), checkpoint.id, transition.id if transition else None)

@@ -9,7 +9,6 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable, Sequence
 
-from polaris_nl.automaton.automaton import Checkpoint, Transition
 from polaris_nl.model.domain import Action
 from polaris_nl.model.formula import Literal
 from polaris_nl.model.goals import leaves_a_choice
@@ -38,6 +37,10 @@ LARGEST_CORE_SEARCH = 8
 """Of more goals than this, one conflicting set is looked for beside those by a rule, not all."""
 SMALL = 3
 """Where it isn't decided if all goals can be met, sets of up to so many are tried."""
+MOST_ANALYSED = 24
+"""Of more goals than this, conflicts are found by rules alone, where there are such."""
+MOST_PAIRS = 300
+"""Pairs of goals that exclude each other by a rule that are told."""
 MOST_REASONS = 30
 """Conflicting sets for which a reason is looked for."""
 MOST_SAID = 3
@@ -51,6 +54,7 @@ class Diagnosis:
         self, world: World, mutexes: Mutexes, segments: Segments, wording: Wording
     ) -> None:
         self._world = world
+        self._mutexes = mutexes
         self._segments = segments
         self._wording = wording
         self._causes = Causes(world, mutexes, segments, wording)
@@ -156,6 +160,9 @@ class Diagnosis:
         known: Sequence[tuple[Literal, ...]] = (),
     ) -> Conflicts[Literal] | None:
         """All conflicting sets, as far as they are found in time; None where the work was cancelled."""
+        many = self._many(place)
+        if many is not None:
+            return many
         over = within(CORE_BUDGET_S, cancelled)
         # A goal that can't be met by itself makes every set with it a conflict that says nothing new.
         alone: list[tuple[Literal, ...]] = []
@@ -195,8 +202,19 @@ class Diagnosis:
         return meets
 
     def _by_rule(self, place: Place) -> list[tuple[Literal, ...]]:
-        pairs = itertools.combinations(place.goals, 2)
-        return [(a, b) for a, b in pairs if a == b.negation or self._causes.exclusive(a, b)]
+        """Pairs of goals that exclude each other by a rule, or are each other's opposite."""
+        wanted = set(place.goals)
+        pairs = self._mutexes.pairs(place.goals)
+        found: list[tuple[Literal, ...]] = list(itertools.islice(pairs, MOST_PAIRS))
+        found.extend((g, g.negation) for g in place.goals if g.positive and g.negation in wanted)
+        return found
+
+    def _many(self, place: Place) -> Conflicts[Literal] | None:
+        """The conflicts of very many goals by a rule alone, without planning; None where there are none."""
+        pairs = self._by_rule(place)
+        if not pairs or len(place.goals) <= MOST_ANALYSED:
+            return None
+        return Conflicts(tuple(pairs), (self._causes.excluded(place.goals),), complete=False)
 
     def _without_choice(self, place: Place, cancelled: Callable[[], bool]) -> bool:
         """Whether it is certain that no other choice of things would do."""
@@ -278,9 +296,3 @@ class Diagnosis:
         else:
             ways = [] if advice else ["Ask for something else, or leave it out."]
         return " ".join([*advice, *ways])
-
-
-def inside(checkpoint: Checkpoint, transition: Transition | None, omitted: Checkpoint) -> Problem:
-    """The problem of a checkpoint that comes after one that is left out."""
-    text = f'"{checkpoint.name}" waits for "{omitted.name}", which I can\'t do.'
-    return Problem("inside", sentence(text), checkpoint.id, transition.id if transition else None)

@@ -28,6 +28,8 @@ MOST_CORRECTIONS = 4
 """Sets of goals to give up or to put off that are proposed."""
 MOST_OTHERS = 3
 """Other things that are proposed in the place of one."""
+MOST_LISTED = 5
+"""Goals to leave out that are named one by one."""
 MOST_STEPS = 5
 """Steps that a checkpoint is split in at most."""
 
@@ -245,4 +247,9 @@ class Proposals:
         return f"{text}, and leave out {self._that(dropped)}" if dropped else text
 
     def _that(self, dropped: Sequence[Literal]) -> str:
+        kept = [g for g in self._trouble.place.goals if g not in dropped]
+        if len(dropped) > MOST_LISTED and len(kept) > MOST_LISTED:
+            return f"{len(dropped)} of the things that are asked for"
+        if len(dropped) > MOST_LISTED:
+            return f"all but that {self._wording.events(kept)}"
         return listed([f"that {self._wording.fact(x)}" for x in dropped])

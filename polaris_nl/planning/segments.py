@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
@@ -120,11 +119,9 @@ class Segments:
 
     def _ruled_out(self, state: State, goals: Sequence[Formula]) -> bool:
         """Whether two goals exclude each other, which a search may take long to find out."""
-        literals = [g for g in goals if isinstance(g, Literal) and g.positive]
-        return any(
-            self._rules.exclusive(a, b) and not (state.holds(a) and state.holds(b))
-            for a, b in itertools.combinations(literals, 2)
-        )
+        literals = [g for g in goals if isinstance(g, Literal)]
+        pairs = self._rules.pairs(literals)
+        return any(not (state.holds(a) and state.holds(b)) for a, b in pairs)
 
     def known(self, state: State, goals: Sequence[Formula]) -> bool:
         """Whether `solve` would answer at once."""

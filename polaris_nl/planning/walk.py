@@ -19,8 +19,8 @@ from polaris_nl.model.state import Mutexes, State
 from polaris_nl.model.wording import Wording
 from polaris_nl.model.world import World
 from polaris_nl.planning.memory import Memory
-from polaris_nl.planning.place import Place
-from polaris_nl.planning.problems import Diagnosis, inside
+from polaris_nl.planning.place import Place, inside
+from polaris_nl.planning.problems import Diagnosis
 from polaris_nl.planning.result import Problem, Segment, Warning
 from polaris_nl.planning.segments import MOST_FACTS, SegmentResult, Segments
 from polaris_nl.planning.witnesses import grounded

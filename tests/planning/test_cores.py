@@ -81,6 +81,21 @@ def test_enough_is_enough() -> None:
     assert (len(found.cores), len(found.cores[0]), found.complete) == (1, 3, False)
 
 
+def test_very_many_known_conflicts_take_no_long_time() -> None:
+    goals = range(20)
+    pairs = list(itertools.combinations(goals, 2))
+    asked: list[Sequence[int]] = []
+
+    def meets(some: Sequence[int]) -> bool:
+        asked.append(some)
+        return len(some) < 2
+
+    found = conflicts(goals, meets, pairs, over=lambda: len(asked) >= 5)
+    assert (len(found.cores), found.complete) == (len(pairs), False)
+    assert len(found.corrections) == 5
+    assert all(len(out) == 19 for out in found.corrections)
+
+
 def test_sets_that_are_alike_are_summed_up() -> None:
     pairs = {(1, 2): "hand", (1, 3): "hand", (2, 3): "hand", (4, 5): "place", (4, 6): "place"}
     assert alike(pairs) == [((1, 2, 3), 2, "hand"), ((4, 5), 2, "place"), ((4, 6), 2, "place")]
