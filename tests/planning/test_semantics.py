@@ -334,6 +334,18 @@ def test_a_conflict_is_smaller_than_what_was_asked(make_world: MakeWorld) -> Non
     assert [len(core) for core in problem.cores] == [3]
 
 
+def test_conflicts_among_very_many_goals_are_told_by_rules_alone(make_world: MakeWorld) -> None:
+    planner = Planner(balls_world(make_world, 60))
+    broken = program(f"all: {' '.join(f'(in b{n} left)' for n in range(60))} (held b0)")
+    problem = only_problem(planner.compile(broken))
+    assert problem.cause == "conflict"
+    assert {len(core) for core in problem.cores} == {2}
+    assert len(problem.cores) < 60 * 59 / 2
+    (drop,) = problem.repairs
+    assert drop.text == "leave out all but that in the b0 the left and held the b0"
+    assert planner.compile(apply_all(broken, drop.edits)).status == "ok"
+
+
 def test_the_four_causes_are_four_messages(care_home: Planner) -> None:
     plan = care_home.compile(
         program(
