@@ -22,7 +22,7 @@ from polaris_nl.planning.tree import plan_tree
 from polaris_nl.planning.walk import Errand, Walker, Work
 from polaris_nl.planning.warnings import warnings_of
 
-STREAM_S = 0.1
+STREAM_S = 0.3
 """Seconds after which what there is of a plan is shown, and shown again."""
 
 

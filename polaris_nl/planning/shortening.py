@@ -8,13 +8,11 @@ from dataclasses import replace
 from polaris_nl.automaton.automaton import START
 from polaris_nl.model.world import World
 from polaris_nl.planning.result import Segment
-from polaris_nl.planning.shorter import JOINT_S, Shortcut, Shortcuts
+from polaris_nl.planning.shorter import Shortcut, Shortcuts
 from polaris_nl.planning.walk import Errand, Walker, Work
 
 BUDGET_S = 3.0
 """Seconds in which a whole program is looked through."""
-QUICK_S = 0.02
-"""The same where a plan is waited for: enough for what one edit has changed in most programs."""
 
 
 class Shortening:
@@ -28,14 +26,13 @@ class Shortening:
     def shortened(self, errand: Errand, work: Work) -> Work:
         """The work with every shortcut that costs nothing, and with the offers of others.
 
-        In a hurry hardly more than what is known already is used.
+        In a hurry only what is known already is used.
         """
         automaton = errand.automaton
-        budget_s = QUICK_S if errand.quick else BUDGET_S
-        deadline = time.monotonic() + budget_s
+        deadline = time.monotonic() + BUDGET_S
 
         def over() -> bool:
-            return errand.cancelled() or time.monotonic() > deadline
+            return errand.quick or errand.cancelled() or time.monotonic() > deadline
 
         if work.cancelled:
             return work
@@ -48,7 +45,7 @@ class Shortening:
             ]
             if segment is None or not onward or checkpoint in work.ahead:
                 continue
-            shortcut = self._shortcuts.at(segment, onward, over, min(budget_s, JOINT_S))
+            shortcut = self._shortcuts.at(segment, onward, over)
             if shortcut is None:
                 continue
             if shortcut.longer:

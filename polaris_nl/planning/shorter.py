@@ -65,15 +65,13 @@ class Shortcuts:
         segment: Segment,
         onward: Sequence[tuple[Segment, bool]],
         cancelled: Callable[[], bool],
-        budget_s: float = JOINT_S,
     ) -> Shortcut | None:
         """The best shortcut at a checkpoint, or None.
 
         Args:
             segment: the segment to the checkpoint.
             onward: the segments after it, each with whether its end matters to anything.
-            cancelled: asked now and then; True ends the work.
-            budget_s: how long each attempt may take, in seconds.
+            cancelled: asked now and then; True ends the work, and only what is remembered is found.
         """
         if not segment.actions or not segment.optimal or not segment.goals:
             return None
@@ -89,11 +87,10 @@ class Shortcuts:
         if known is None:
             if cancelled():
                 return None
-            found = list(self._found(segment, onward, budget_s, cancelled))
+            found = list(self._found(segment, onward, cancelled))
             found.sort(key=lambda s: (-s.saved, s.longer, len(s.extra), s.extra))
             known = tuple(found[:1])
-            # In less time, finding nothing is no proof.
-            if not cancelled() and (known or budget_s >= JOINT_S):
+            if not cancelled():
                 self._known.put(key, known)
         return known[0] if known else None
 
@@ -101,14 +98,13 @@ class Shortcuts:
         self,
         segment: Segment,
         onward: Sequence[tuple[Segment, bool]],
-        budget_s: float,
         cancelled: Callable[[], bool],
     ) -> Iterator[Shortcut]:
         tried: set[tuple[Literal, ...]] = set()
         for following, _ in onward:
             apart = len(segment.actions) + len(following.actions)
             stages = (Stage(segment.goals, following.when), Stage(following.goals))
-            ways = self._ahead.ways(segment.before, stages, budget_s, cancelled)
+            ways = self._ahead.ways(segment.before, stages, JOINT_S, cancelled)
             if ways is None or len(ways[0]) + len(ways[1]) >= apart:
                 continue
             steps = self._segments.steps(segment.before, segment.goals, ways[0])

@@ -18,7 +18,7 @@ from polaris_nl.model.formula import Literal, parse_literal
 from polaris_nl.model.state import State
 from polaris_nl.model.world_file import load_world
 from polaris_nl.planning import compile as compiling
-from polaris_nl.planning import segments, shortening
+from polaris_nl.planning import segments
 from polaris_nl.planning.compile import Draft
 from polaris_nl.planning.memory import Memory
 from polaris_nl.planning.pddl_text import problem_text
@@ -222,10 +222,7 @@ def test_a_shorter_joint_plan_is_offered_and_can_be_taken_up(care_home: Planner)
     assert (better.status, better.action_count, better.warnings) == ("ok", 6, ())
 
 
-def test_an_offer_that_takes_long_to_find_comes_with_the_next_plan(
-    fresh: Planner, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(shortening, "QUICK_S", 0.0)
+def test_an_offer_is_looked_for_after_the_plan_and_comes_with_the_next(fresh: Planner) -> None:
     assert [len(d.plan.warnings) for d in fresh.drafts(TOGETHER)] == [0]
     assert [len(d.plan.warnings) for d in fresh.drafts(TOGETHER)] == [1]
 

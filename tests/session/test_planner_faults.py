@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import subprocess
 import sys
@@ -38,7 +39,8 @@ def install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Install:
 def children() -> list[str]:
     found = []
     for task in Path("/proc/self/task").iterdir():
-        found += (task / "children").read_text(encoding="ascii").split()
+        with contextlib.suppress(OSError):  # A thread may end meanwhile.
+            found += (task / "children").read_text(encoding="ascii").split()
     return found
 
 
