@@ -1,27 +1,51 @@
-"""Plans the newest revision of a program in a thread of its own; newer revisions cancel older work."""
+"""Plans the newest revision of a program in a thread of its own; newer revisions cancel older work.
+
+Plans stream: parts of one while it takes long, then all of it, then a better one where there is any.
+"""
 
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from polaris_nl.automaton.automaton import Automaton
 from polaris_nl.model.errors import PolarisError
-from polaris_nl.planning.result import BranchingPlan
 
-Compile = Callable[[Automaton, Callable[[], bool]], BranchingPlan]
+if TYPE_CHECKING:
+    from polaris_nl.planning.compile import Draft
+    from polaris_nl.planning.result import BranchingPlan
+
+Compile = Callable[[Automaton, Callable[[], bool]], "Iterator[Draft]"]
 """Plans an automaton; the second argument says when the work has become stale."""
 
-Publish = Callable[[int, BranchingPlan | None, str], None]
-"""Is given revision, plan and failure: the plan is None and the failure a sentence where planning failed."""
+
+@dataclass(frozen=True, slots=True)
+class Published:
+    """News about the plan of a revision.
+
+    Attributes:
+        plan: None where planning failed.
+        failure: what failed, in a sentence, or "".
+        whole: all of the program has been tried; else more is about to come.
+    """
+
+    revision: int
+    plan: BranchingPlan | None
+    failure: str = ""
+    whole: bool = True
+
+
+Publish = Callable[[Published], None]
 
 
 class Replanner:
     """One planning thread.
 
     Args:
-        compile: makes the plan; called in the thread, one call at a time.
-        publish: is given the result; called in the thread, never for a revision that has become
+        compile: makes the drafts of a plan; called in the thread, one call at a time.
+        publish: is given each draft; called in the thread, never for a revision that has become
             stale.
     """
 
@@ -62,19 +86,23 @@ class Replanner:
                     return
                 revision, automaton = self._wanted
                 self._wanted = None
-            plan, failure = self._try(revision, automaton)
-            if not self._stale(revision):
-                self._publish(revision, plan, failure)
+            self._plan(revision, automaton)
 
     def _stale(self, revision: int) -> bool:
         return self._closed or revision != self._newest
 
-    def _try(self, revision: int, automaton: Automaton) -> tuple[BranchingPlan | None, str]:
+    def _plan(self, revision: int, automaton: Automaton) -> None:
+        failure = ""
         try:
-            return self._compile(automaton, lambda: self._stale(revision)), ""
+            for draft in self._compile(automaton, lambda: self._stale(revision)):
+                if self._stale(revision):
+                    return
+                self._publish(Published(revision, draft.plan, whole=draft.whole))
         except PolarisError as error:
-            return None, str(error)
+            failure = str(error)
         except Exception as error:
             # A fault in planning must neither end the session nor leave its faces waiting for ever.
             kind = type(error).__name__
-            return None, f"Planning failed ({kind}: {error}); undo, or say it another way."
+            failure = f"Planning failed ({kind}: {error}); undo, or say it another way."
+        if failure and not self._stale(revision):
+            self._publish(Published(revision, None, failure))

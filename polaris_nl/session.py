@@ -27,9 +27,8 @@ from polaris_nl.language.interpretation import Command, Interpretation, Query, R
 from polaris_nl.model.errors import FileError, PolarisError
 from polaris_nl.model.wording import Wording
 from polaris_nl.model.world import World
-from polaris_nl.planning.result import BranchingPlan
 from polaris_nl.publishing import Publisher, Subscriber
-from polaris_nl.replanning import Replanner
+from polaris_nl.replanning import Published, Replanner
 from polaris_nl.snapshot import Answer, Planning, Snapshot, answer_json
 
 if TYPE_CHECKING:
@@ -70,7 +69,7 @@ class Session:
         self._last_say = ""
         self._publisher = Publisher(Snapshot(automaton=self._history.present))
         self._replanner = Replanner(
-            lambda automaton, stale: self.planner.compile(automaton, stale), self._publish_plan
+            lambda automaton, stale: self.planner.drafts(automaton, stale), self._publish_plan
         )
 
     # The parts, each made when it is first needed: they take a second to load.
@@ -367,12 +366,17 @@ class Session:
 
     # Plans, in the planning thread
 
-    def _publish_plan(self, revision: int, plan: BranchingPlan | None, failure: str) -> None:
-        state: Planning = "failed" if plan is None else "planned"
-        snapshot = self._publisher.of_revision(revision, plan=plan, planning=state, failure=failure)
+    def _publish_plan(self, news: Published) -> None:
+        state: Planning = "planning"
+        if news.whole:
+            state = "failed" if news.plan is None else "planned"
+        snapshot = self._publisher.of_revision(
+            news.revision, plan=news.plan, planning=state, failure=news.failure
+        )
         if snapshot is None:
             return
-        self._report_planned(snapshot)
+        if news.whole:
+            self._report_planned(snapshot)
         self._publisher.tell()
 
     # Events

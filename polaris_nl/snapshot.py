@@ -21,8 +21,9 @@ class Snapshot:
 
     Attributes:
         revision: counts the changes of the program.
-        plan: the newest plan there is; of this revision only if `planning` is `planned`.
-        planning: whether the plan of this revision is still being made.
+        plan: the newest plan there is; wholly of this revision only if `planning` is `planned`.
+        planning: whether the plan of this revision is still being made; until it is there, the plan is
+            an older one, or as much of the new one as there is.
         failure: why planning failed, or "".
         undoable, redoable: the labels of what can be undone and redone, the next last.
     """

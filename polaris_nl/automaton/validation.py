@@ -11,6 +11,8 @@ import networkx as nx
 
 from polaris_nl.automaton.automaton import START, Automaton, Transition
 from polaris_nl.model.check import Types, action_faults, formula_faults
+from polaris_nl.model.domain import KIND
+from polaris_nl.model.formula import And, Equal, Formula, Imply, Literal, Not, Or, Quantified
 from polaris_nl.model.world import World
 
 Cause = OneOf["structure", "invalid", "underspecified"]
@@ -38,6 +40,7 @@ def validate(automaton: Automaton, world: World) -> tuple[Fault, ...]:
     return (
         *_structure(automaton),
         *_names(automaton, world, types),
+        *_no_goals(automaton),
         *_underspecified(automaton),
     )
 
@@ -95,6 +98,51 @@ def _names(automaton: Automaton, world: World, types: Types) -> Iterator[Fault]:
                 yield Fault(
                     "invalid", f"In the conditional {where}: {text}", transition=transition.id
                 )
+
+
+def _no_goals(automaton: Automaton) -> Iterator[Fault]:
+    for checkpoint in automaton.checkpoints.values():
+        for goal in checkpoint.goals:
+            part = no_goal(goal)
+            if part is not None:
+                text = f"In {checkpoint.name}: {part} is no goal, as {_why_no_goal(part)}."
+                yield Fault("invalid", text, checkpoint.id)
+    for transition in automaton.transitions.values():
+        for literal in transition.when:
+            if literal.predicate == KIND:
+                text = f"{literal} is no conditional, as what kind a thing is never changes."
+                yield Fault("invalid", text, transition.target, transition.id)
+
+
+def no_goal(goal: Formula, chosen: bool = False) -> Formula | None:
+    """The first part of a goal that asks for no fact, such as an `or`; None where all of it does.
+
+    Args:
+        goal: the goal.
+        chosen: whether it stands inside an `exists`, where kinds and equality pick the things.
+    """
+    if isinstance(goal, Literal):
+        return goal if goal.predicate == KIND and not chosen else None
+    if isinstance(goal, And):
+        return next((p for p in (no_goal(x, chosen) for x in goal.parts) if p is not None), None)
+    if isinstance(goal, Imply):
+        return no_goal(goal.conclusion, chosen)
+    if isinstance(goal, Quantified):
+        return no_goal(goal.body, chosen or goal.quantifier == "exists")
+    picks = goal.part if isinstance(goal, Not) else goal
+    kind = isinstance(picks, Literal) and picks.predicate == KIND
+    return None if chosen and (isinstance(picks, Equal) or kind) else goal
+
+
+def _why_no_goal(part: Formula) -> str:
+    if isinstance(part, Literal):
+        return "the world's file says what kind a thing is, and no action changes it"
+    if isinstance(part, Or):
+        return (
+            'I can\'t choose between goals ("or") yet; ask for one of them, or make two ways with a'
+            " condition each"
+        )
+    return "a goal is a fact, or one for all or some of a kind; ask for one of the facts in it"
 
 
 def _underspecified(automaton: Automaton) -> Iterator[Fault]:

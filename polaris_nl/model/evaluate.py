@@ -1,9 +1,9 @@
-"""The truth of formulas in states, what actions do, and goals without quantifiers."""
+"""The truth of formulas in states, and what actions do."""
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 from polaris_nl.model.domain import Action, Operator
 from polaris_nl.model.errors import FormatError
@@ -11,7 +11,6 @@ from polaris_nl.model.formula import (
     And,
     Equal,
     Formula,
-    Goal,
     Imply,
     Literal,
     Not,
@@ -50,37 +49,6 @@ def instances_of(formula: Quantified, world: World) -> Iterator[Formula]:
     names = [v.name for v in formula.variables]
     for values in itertools.product(*choices):
         yield bind(formula.body, dict(zip(names, values, strict=True)))
-
-
-def ground_goals(goals: Iterable[Goal], state: State, world: World) -> tuple[Literal, ...]:
-    """The literals that goals ask for, quantifiers expanded (DESIGN section 5 point 7).
-
-    A condition inside `for all` is read in the given state: "put every dirty dish on the
-    countertop" is about the dishes that are dirty when the robot gets there.
-
-    Raises:
-        FormatError: a goal asks for an alternative (`or`, `exists`), which is no set of literals.
-    """
-    found: dict[Literal, None] = {}
-    for goal in goals:
-        found.update(dict.fromkeys(_required(goal, state, world)))
-    return tuple(found)
-
-
-def _required(goal: Goal, state: State, world: World) -> Iterator[Literal]:
-    if isinstance(goal, Literal):
-        yield goal
-    elif isinstance(goal, And):
-        for part in goal.parts:
-            yield from _required(part, state, world)
-    elif isinstance(goal, Imply):
-        if holds(goal.condition, state, world):
-            yield from _required(goal.conclusion, state, world)
-    elif isinstance(goal, Quantified) and goal.quantifier == "forall":
-        for body in instances_of(goal, world):
-            yield from _required(body, state, world)
-    else:
-        raise FormatError(f"{goal} is no goal yet: a goal is a fact, or one for all of a kind.")
 
 
 def applicable(action: Action, operator: Operator, state: State, world: World) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from polaris_nl.model.formula import Literal
@@ -62,6 +62,23 @@ class Mutexes:
             if not set(group.keys(a)).isdisjoint(group.keys(b)):
                 return group
         return None
+
+    def pairs(self, literals: Sequence[Literal]) -> Iterator[tuple[Literal, Literal]]:
+        """The pairs of different positive literals that exclude each other, in their order, one by one."""
+        members: dict[object, list[int]] = {}
+        for at, literal in enumerate(literals):
+            if literal.positive:
+                for number, group in enumerate(self.groups):
+                    for key in set(group.keys(literal)):
+                        members.setdefault((number, key), []).append(at)
+        shared: dict[int, list[list[int]]] = {}
+        for group_members in members.values():
+            for at in group_members if len(group_members) > 1 else ():
+                shared.setdefault(at, []).append(group_members)
+        for at in sorted(shared):
+            for other in sorted({x for some in shared[at] for x in some if x > at}):
+                if literals[at] != literals[other]:
+                    yield literals[at], literals[other]
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 
@@ -24,3 +25,8 @@ def sentence(text: str) -> str:
 def with_article(noun: str) -> str:
     """A noun with "a" or "an"."""
     return f"{'an' if noun[:1] in 'aeiou' else 'a'} {noun}"
+
+
+def supposed(clause: str) -> str:
+    """A clause to go after "if", of what isn't so: "the hall and the attic were connected"."""
+    return re.sub(r"\b(is|are)\b", "were", clause, count=1)

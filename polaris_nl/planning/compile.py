@@ -3,47 +3,41 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Collection, Iterable, Iterator
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 
-from polaris_nl.automaton.automaton import START, Automaton, Checkpoint, Transition
+from polaris_nl.automaton.automaton import START, Automaton
 from polaris_nl.automaton.validation import validate
-from polaris_nl.model.domain import KIND
-from polaris_nl.model.evaluate import after, applicable, ground_goals
-from polaris_nl.model.formula import And, Formula, Imply, Literal, Quantified, bind
-from polaris_nl.model.state import Mutexes, State
+from polaris_nl.model.state import Mutexes
 from polaris_nl.model.wording import Wording
 from polaris_nl.model.world import World
-from polaris_nl.planning.ahead import BUDGET_S as AHEAD_S
-from polaris_nl.planning.ahead import other_ways
-from polaris_nl.planning.problems import Diagnosis, Place, inside, without_a_way
-from polaris_nl.planning.result import BranchingPlan, Problem, Segment, Status, Warning
-from polaris_nl.planning.segments import SegmentResult, Segments
+from polaris_nl.planning.ahead import Ahead
+from polaris_nl.planning.detours import Detours
+from polaris_nl.planning.faults import Faults
+from polaris_nl.planning.result import BranchingPlan, Segment, Status
+from polaris_nl.planning.segments import Segments
+from polaris_nl.planning.shortening import Shortening
+from polaris_nl.planning.shorter import Shortcuts
 from polaris_nl.planning.tree import plan_tree
+from polaris_nl.planning.walk import Errand, Walker, Work
 from polaris_nl.planning.warnings import warnings_of
 
-MOST_DETOURS = 3
-"""Dead ends of one program that are planned around."""
-LOOK_BACK = 3
-"""Segments before a failed one that may be planned another way."""
+STREAM_S = 0.3
+"""Seconds after which what there is of a plan is shown, and shown again."""
 
 
-@dataclass
-class _Work:
-    segments: dict[str, Segment] = field(default_factory=dict)
-    problems: list[Problem] = field(default_factory=list)
-    notes: list[Warning] = field(default_factory=list)
-    cancelled: bool = False
+@dataclass(frozen=True, slots=True)
+class Draft:
+    """A plan on its way.
 
-    def own_problems(self) -> int:
-        """How many checkpoints fail by themselves, not because of one above them."""
-        return sum(p.cause != "inside" for p in self.problems)
+    Attributes:
+        whole: all checkpoints have been tried; a later draft can only be better.
+        shown: the segments to be kept in the next plan where they are as good then.
+    """
 
-    def without(self, checkpoints: Collection[str]) -> _Work:
-        """A copy in which some checkpoints are still to be planned."""
-        segments = {k: s for k, s in self.segments.items() if k not in checkpoints}
-        problems = [p for p in self.problems if p.checkpoint not in checkpoints]
-        return _Work(segments, problems, list(self.notes))
+    plan: BranchingPlan
+    whole: bool
+    shown: Mapping[str, Segment] = field(default_factory=dict, repr=False)
 
 
 class Compiler:
@@ -61,254 +55,114 @@ class Compiler:
     ) -> None:
         self._world = world
         self._mutexes = mutexes
-        self._segments = segments
-        self._diagnosis = Diagnosis(world, mutexes, segments, wording)
         self._wording = wording
+        ahead = Ahead(world, mutexes)
+        self._faults = Faults(world, mutexes, segments, wording)
+        self._walker = Walker(world, mutexes, segments, wording)
+        self._detours = Detours(world, self._walker, segments, ahead)
+        shortcuts = Shortcuts(mutexes, segments, ahead, wording)
+        self._shortening = Shortening(world, self._walker, shortcuts)
 
     def compile(self, automaton: Automaton, cancelled: Callable[[], bool]) -> BranchingPlan:
-        """Plans every checkpoint that can be planned.
+        """Plans every checkpoint that can be planned: a pure function of the program.
 
         A cancelled compile returns what it has, with status `undecided`.
         """
         started = time.perf_counter()
+        broken = self._broken(automaton, cancelled, started)
+        if broken is not None:
+            return broken
+        errand = Errand(automaton, cancelled)
+        work = Work()
+        for _ in self._walk(errand, work):
+            pass
+        return self._plan(automaton, self._looked_ahead(errand, work), started)
+
+    def drafts(
+        self,
+        automaton: Automaton,
+        cancelled: Callable[[], bool],
+        shown: Mapping[str, Segment],
+        changed: frozenset[str],
+    ) -> Iterator[Draft]:
+        """Plans as `compile` does, and gives what there is as soon as there is any.
+
+        At first any plan will do where a shortest one takes long; better ones come after.
+
+        Args:
+            automaton: the program.
+            cancelled: asked now and then; True ends the drafts.
+            shown: the segments that are shown now; they are kept where they are as good.
+            changed: the checkpoints that are planned first, with all on the way to them.
+        """
+        started = last = time.perf_counter()
+        broken = self._broken(automaton, cancelled, started)
+        if broken is not None:
+            yield Draft(broken, True, shown)
+            return
+        first = frozenset(
+            t.target for c in changed if c in automaton.checkpoints for t in automaton.path(c)
+        )
+        errand = Errand(automaton, cancelled, True, first, shown)
+        work = Work()
+        for _ in self._walk(errand, work):
+            if time.perf_counter() - last > STREAM_S:
+                part = self._plan(automaton, replace(work, cancelled=True), started)
+                yield Draft(part, False, shown)
+                last = time.perf_counter()
+        work = self._looked_ahead(errand, work)
+        quick = self._plan(automaton, work, started)
+        if work.cancelled:
+            return
+        yield Draft(quick, True, work.plain())
+        errand = replace(errand, quick=False, kept=work.plain())
+        better = Work()
+        for _ in self._walk(errand, better):
+            pass
+        better = self._looked_ahead(errand, better)
+        plan = self._plan(automaton, better, started)
+        # No screen is drawn again for an offer alone: it is known now, and comes with the next plan.
+        same = plan.segments == quick.segments and plan.problems == quick.problems
+        if not better.cancelled and not cancelled() and not same:
+            yield Draft(plan, True, better.plain())
+
+    def _walk(self, errand: Errand, work: Work) -> Iterator[None]:
+        start = errand.automaton.outgoing(START)
+        return self._walker.walk(errand, [(t, self._world.initial) for t in start], work)
+
+    def _looked_ahead(self, errand: Errand, work: Work) -> Work:
+        return self._shortening.shortened(errand, self._detours.around(errand, work))
+
+    def _broken(
+        self, automaton: Automaton, cancelled: Callable[[], bool], started: float
+    ) -> BranchingPlan | None:
+        """The plan of a program that nothing can be compiled of."""
         faults = validate(automaton, self._world)
-        if faults:
-            problems = tuple(Problem(f.cause, f.text, f.checkpoint, f.transition) for f in faults)
-            # Names and shape come first: until they are right, the same conditional may not be the same.
-            only_under = all(f.cause == "underspecified" for f in faults)
-            status: Status = "underspecified" if only_under else "invalid"
-            return BranchingPlan(status, {}, None, problems, (), _ms(started))
-        no_goals = tuple(_no_goals(automaton))
-        if no_goals:
-            return BranchingPlan("invalid", {}, None, no_goals, (), _ms(started))
-        work = _Work()
-        self._walk(automaton, ((START, self._world.initial),), work, cancelled)
-        for _ in range(MOST_DETOURS):
-            better = self._detour(automaton, work, cancelled)
-            if better is None:
-                # A problem that planning ahead might have solved is none yet.
-                work.cancelled = work.cancelled or (bool(work.problems) and cancelled())
-                break
-            work = better
-        tree = plan_tree(automaton, work.segments, self._world)
-        warnings = self._warnings(automaton, work)
-        status = _status(work)
+        if not faults:
+            return None
+        problems = self._faults.problems(automaton, faults, cancelled)
+        # Names and shape come first: until they are right, the same conditional may not be the same.
+        only_under = all(f.cause == "underspecified" for f in faults)
+        status: Status = "underspecified" if only_under else "invalid"
+        return BranchingPlan(status, {}, None, problems, (), _ms(started))
+
+    def _plan(self, automaton: Automaton, work: Work, started: float) -> BranchingPlan:
+        place = {c: n for n, c in enumerate(automaton.subtree(START))}
+        segments = {c: work.segments[c] for c in place if c in work.segments}
+        problems = sorted(work.problems, key=lambda p: place.get(p.checkpoint or "", 0))
+        states = {START: self._world.initial, **{k: s.after for k, s in segments.items()}}
+        warnings = warnings_of(automaton, states, self._mutexes, self._world, self._wording)
         return BranchingPlan(
-            status, work.segments, tree, tuple(work.problems), warnings, _ms(started)
+            _status(work),
+            segments,
+            plan_tree(automaton, segments, self._world),
+            tuple(problems),
+            (*work.notes, *warnings),
+            _ms(started),
         )
 
-    def _walk(
-        self,
-        automaton: Automaton,
-        starts: Iterable[tuple[str, State]],
-        work: _Work,
-        cancelled: Callable[[], bool],
-    ) -> None:
-        """Plans everything below some checkpoints, each with the state that it ends in."""
-        waiting = [(t, state) for c, state in starts for t in reversed(automaton.outgoing(c))]
-        while waiting:
-            transition, before = waiting.pop()
-            if cancelled():
-                work.cancelled = True
-                return
-            checkpoint = automaton.checkpoints[transition.target]
-            state = before.after_event(transition.when, self._mutexes)
-            segment = self._segment(automaton, checkpoint, transition, state, work, cancelled)
-            if work.cancelled:
-                return
-            if segment is None:
-                work.problems.extend(self._inside(automaton, checkpoint))
-                continue
-            work.segments[checkpoint.id] = segment
-            waiting.extend((t, segment.after) for t in reversed(automaton.outgoing(checkpoint.id)))
 
-    def _detour(
-        self, automaton: Automaton, work: _Work, cancelled: Callable[[], bool]
-    ) -> _Work | None:
-        """The work with another way through an earlier segment, where that lets a later one succeed."""
-        for problem in work.problems:
-            if problem.cause not in ("unreachable", "conflict") or problem.checkpoint is None:
-                continue
-            for earlier in self._to_blame(automaton, problem.checkpoint, work, cancelled):
-                for way in other_ways(earlier, self._segments, cancelled):
-                    better = self._retried(automaton, earlier, way, work, cancelled)
-                    if better is not None:
-                        better.notes.append(self._note(automaton, earlier, problem.checkpoint))
-                        return better
-        return None
-
-    def _to_blame(
-        self, automaton: Automaton, failed: str, work: _Work, cancelled: Callable[[], bool]
-    ) -> Iterator[Segment]:
-        """Earlier segments, the nearest first, before which the failed goals could still be reached."""
-        transition = automaton.incoming(failed)
-        checkpoint = automaton.parent(failed)
-        for _ in range(LOOK_BACK):
-            earlier = work.segments.get(checkpoint or "")
-            if transition is None or earlier is None:
-                return
-            insisted = automaton.checkpoints[earlier.target].action is not None
-            if earlier.actions and not insisted and not cancelled():
-                state = earlier.before.after_event(transition.when, self._mutexes)
-                goals = ground_goals(automaton.checkpoints[failed].goals, state, self._world)
-                result = self._segments.solve(state, goals, AHEAD_S, cancelled)
-                if result.status == "solved":
-                    yield earlier
-            checkpoint = automaton.parent(earlier.target)
-
-    def _retried(
-        self,
-        automaton: Automaton,
-        earlier: Segment,
-        way: SegmentResult,
-        work: _Work,
-        cancelled: Callable[[], bool],
-    ) -> _Work | None:
-        if way.actions == earlier.actions:
-            return None
-        trial = work.without(automaton.subtree(earlier.target))
-        transition = automaton.transitions[earlier.transition]
-        checkpoint = automaton.checkpoints[earlier.target]
-        shortest = earlier.optimal and len(way.actions) == len(earlier.actions)
-        made = SegmentResult("solved", way.actions, shortest)
-        segment = self._made(transition, checkpoint, earlier.before, earlier.goals, made)
-        trial.segments[checkpoint.id] = segment
-        self._walk(automaton, ((checkpoint.id, segment.after),), trial, cancelled)
-        better = not trial.cancelled and trial.own_problems() < work.own_problems()
-        return trial if better else None
-
-    def _note(self, automaton: Automaton, earlier: Segment, failed: str) -> Warning:
-        names = automaton.checkpoints
-        text = (
-            f"On the way to {names[earlier.target].name} I plan ahead: the first way that I found would have "
-            f"kept me from {names[failed].name}."
-        )
-        return Warning(text, earlier.transition)
-
-    def _segment(
-        self,
-        automaton: Automaton,
-        checkpoint: Checkpoint,
-        transition: Transition,
-        state: State,
-        work: _Work,
-        cancelled: Callable[[], bool],
-    ) -> Segment | None:
-        if checkpoint.action is not None:
-            return self._insisted(checkpoint, transition, state, work, cancelled)
-        goals = ground_goals(checkpoint.goals, state, self._world)
-        place = Place(automaton, checkpoint, transition, state, goals)
-        problem = self._diagnosis.conflict(place, cancelled)
-        if problem is None:
-            result = self._solve(state, goals, cancelled)
-            if result.status == "solved":
-                return self._made(transition, checkpoint, state, goals, result)
-            if result.status == "cancelled":
-                work.cancelled = True
-                return None
-            problem = self._diagnosis.failure(place, result, cancelled)
-        work.problems.append(problem)
-        return None
-
-    def _insisted(
-        self,
-        checkpoint: Checkpoint,
-        transition: Transition,
-        state: State,
-        work: _Work,
-        cancelled: Callable[[], bool],
-    ) -> Segment | None:
-        """A checkpoint whose action the user insists on: get to where it can be done, then do it."""
-        action = checkpoint.action
-        assert action is not None
-        operator = self._world.domain.operators[action.operator]
-        needed: tuple[Formula, ...] = (bind(operator.precondition, operator.binding(action)),)
-        result = SegmentResult("solved", (), True)
-        if not applicable(action, operator, state, self._world):
-            result = self._segments.solve(state, needed, cancelled=cancelled)
-        if result.status == "cancelled":
-            work.cancelled = True
-            return None
-        if result.status != "solved":
-            work.problems.append(
-                without_a_way(checkpoint, transition, action, result, self._wording)
-            )
-            return None
-        whole = SegmentResult("solved", (*result.actions, action), result.optimal)
-        return self._made(transition, checkpoint, state, (), whole)
-
-    def _solve(
-        self, state: State, goals: tuple[Literal, ...], cancelled: Callable[[], bool]
-    ) -> SegmentResult:
-        if all(state.holds(goal) for goal in goals):
-            return SegmentResult("solved", (), True)
-        return self._segments.solve(state, goals, cancelled=cancelled)
-
-    def _made(
-        self,
-        transition: Transition,
-        checkpoint: Checkpoint,
-        before: State,
-        goals: tuple[Literal, ...],
-        result: SegmentResult,
-    ) -> Segment:
-        state = before
-        for action in result.actions:
-            state = after(action, self._world.domain.operators[action.operator], state, self._world)
-        return Segment(
-            transition.id,
-            transition.source,
-            checkpoint.id,
-            transition.when,
-            goals,
-            result.actions,
-            result.optimal,
-            before,
-            state,
-        )
-
-    def _inside(self, automaton: Automaton, omitted: Checkpoint) -> list[Problem]:
-        below = automaton.subtree(omitted.id)[1:]
-        return [inside(automaton.checkpoints[c], automaton.incoming(c), omitted) for c in below]
-
-    def _warnings(self, automaton: Automaton, work: _Work) -> tuple[Warning, ...]:
-        states = {START: self._world.initial, **{k: s.after for k, s in work.segments.items()}}
-        found = warnings_of(automaton, states, self._mutexes, self._world, self._wording)
-        return (*work.notes, *found)
-
-
-def _no_goals(automaton: Automaton) -> Iterator[Problem]:
-    for checkpoint in automaton.checkpoints.values():
-        for goal in checkpoint.goals:
-            part = _no_goal(goal)
-            if part is None:
-                continue
-            why = "a goal is a fact, or one for all of a kind; ask for one of the facts in it"
-            if isinstance(part, Literal):
-                why = "the world's file says what kind a thing is, and no action changes it"
-            text = f"In {checkpoint.name}: {part} is no goal, as {why}."
-            yield Problem("invalid", text, checkpoint.id)
-    for transition in automaton.transitions.values():
-        for literal in transition.when:
-            if literal.predicate == KIND:
-                text = f"{literal} is no conditional, as what kind a thing is never changes."
-                yield Problem("invalid", text, transition.target, transition.id)
-
-
-def _no_goal(goal: Formula) -> Formula | None:
-    """The first part of a goal that asks for no fact, such as an `or`; None where all of it does."""
-    if isinstance(goal, Literal):
-        return goal if goal.predicate == KIND else None
-    if isinstance(goal, And):
-        return next((p for p in map(_no_goal, goal.parts) if p is not None), None)
-    if isinstance(goal, Imply):
-        return _no_goal(goal.conclusion)
-    if isinstance(goal, Quantified) and goal.quantifier == "forall":
-        return _no_goal(goal.body)
-    return goal
-
-
-def _status(work: _Work) -> Status:
+def _status(work: Work) -> Status:
     if work.cancelled:
         return "undecided"
     if not work.problems:

@@ -31,18 +31,25 @@ def planner_type(domain: Domain, kind: str) -> str:
     return ITEM if kind == OBJECT and domain.object_is_a_type else kind
 
 
-def domain_text(domain: Domain) -> str:
-    """The domain for the planner."""
-    if not domain.object_is_a_type:
+def domain_text(domain: Domain, written: bool = False) -> str:
+    """The domain for the planner.
+
+    Args:
+        domain: the domain.
+        written: write it from its parts even where its source would do, as it has been added to.
+    """
+    if not domain.object_is_a_type and not written:
         return domain.source
     types = " ".join(_type_line(domain, kind) for kind in domain.types)
     predicates = " ".join(
         f"({p.name} {_variables(domain, p.parameters)})" for p in domain.predicates.values()
     )
     operators = "\n".join(_operator(domain, op) for op in domain.operators.values())
+    named = " ".join(f"{n} - {planner_type(domain, t)}" for n, t in domain.constants.items())
+    constants = f"(:constants {named})\n" if named else ""
     return (
         f"(define (domain {domain.name}) (:requirements :adl)\n(:types {types})\n"
-        f"(:predicates {predicates})\n{operators})"
+        f"{constants}(:predicates {predicates})\n{operators})"
     )
 
 

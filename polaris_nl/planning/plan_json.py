@@ -2,11 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from polaris_nl.automaton.automaton import START, Automaton
 from polaris_nl.automaton.edit_json import edit_json
-from polaris_nl.planning.result import BranchingPlan, PlanEdge, PlanNode, Problem, Segment
+from polaris_nl.planning.result import (
+    BranchingPlan,
+    PlanEdge,
+    PlanNode,
+    Problem,
+    Repair,
+    Segment,
+    Warning,
+)
 
 
 def plan_json(plan: BranchingPlan, automaton: Automaton) -> dict[str, Any]:
@@ -18,7 +27,7 @@ def plan_json(plan: BranchingPlan, automaton: Automaton) -> dict[str, Any]:
         "branches": branches_json(plan, automaton),
         "tree": None if plan.root is None else _node(plan.root),
         "problems": [_problem(problem) for problem in plan.problems],
-        "warnings": [{"transition": w.transition, "text": w.text} for w in plan.warnings],
+        "warnings": [_warning(warning) for warning in plan.warnings],
     }
 
 
@@ -75,7 +84,16 @@ def _problem(problem: Problem) -> dict[str, Any]:
         "cause": problem.cause,
         "text": problem.text,
         "cores": [[str(x) for x in core] for core in problem.cores],
-        "repairs": [
-            {"text": r.text, "edits": [edit_json(e) for e in r.edits]} for r in problem.repairs
-        ],
+        "repairs": _repairs(problem.repairs),
     }
+
+
+def _warning(warning: Warning) -> dict[str, Any]:
+    value: dict[str, Any] = {"transition": warning.transition, "text": warning.text}
+    if warning.repairs:
+        value["repairs"] = _repairs(warning.repairs)
+    return value
+
+
+def _repairs(repairs: Sequence[Repair]) -> list[dict[str, Any]]:
+    return [{"text": r.text, "edits": [edit_json(e) for e in r.edits]} for r in repairs]

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from polaris_nl.automaton.automaton import Automaton
 from polaris_nl.model.formula import Formula
 from polaris_nl.model.state import Mutexes, State
 from polaris_nl.model.wording import PlainWording, Wording
 from polaris_nl.model.world import World
-from polaris_nl.planning.compile import Compiler
+from polaris_nl.planning.compile import Compiler, Draft
 from polaris_nl.planning.mutexes import find_mutexes
-from polaris_nl.planning.result import BranchingPlan
+from polaris_nl.planning.result import BranchingPlan, Segment
 from polaris_nl.planning.segments import BUDGET_S, SegmentResult, Segments, never
 
 
@@ -34,6 +34,8 @@ class Planner:
         self.mutexes: Mutexes = find_mutexes(world)
         self._segments = Segments(world, self.mutexes)
         self._compiler = Compiler(world, self.mutexes, self._segments, self.wording)
+        self._edited = Automaton()
+        self._shown: Mapping[str, Segment] = {}
 
     def compile(self, automaton: Automaton, cancelled: Callable[[], bool] = never) -> BranchingPlan:
         """The branching plan of a program, or the reasons why parts of it are missing.
@@ -43,6 +45,30 @@ class Planner:
             cancelled: asked now and then; True ends the work, and the result is to be thrown away.
         """
         return self._compiler.compile(automaton, cancelled)
+
+    def drafts(
+        self, automaton: Automaton, cancelled: Callable[[], bool] = never
+    ) -> Iterator[Draft]:
+        """The plan of a program that is being edited: what there is of it, then all, then a better one.
+
+        What is shown of the last program is kept where it is as good, and what has changed since is
+        planned first. For one thread at a time.
+
+        Args:
+            automaton: the program.
+            cancelled: asked now and then; True ends the drafts.
+        """
+        before, self._edited = self._edited, automaton
+        changed = frozenset(
+            c.id
+            for c in automaton.checkpoints.values()
+            if before.checkpoints.get(c.id) is not c
+            or before.incoming(c.id) != automaton.incoming(c.id)
+        )
+        for draft in self._compiler.drafts(automaton, cancelled, self._shown, changed):
+            if draft.whole:
+                self._shown = draft.shown
+            yield draft
 
     def segment(
         self, state: State, goals: Sequence[Formula], budget_s: float = BUDGET_S

@@ -1,142 +1,103 @@
-"""Ways out of a problem, each tried before it is offered: small edits after which the checkpoint has a plan."""
+"""Ways out of a problem, each tried before it is offered: edits after which the checkpoint has a plan."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterable
 
-from polaris_nl.automaton.automaton import Automaton, Checkpoint, Transition
-from polaris_nl.automaton.edits import Edit, InsertCheckpoint, SetConditional, SetGoals, apply_all
-from polaris_nl.automaton.validation import validate
-from polaris_nl.model.errors import EditError
-from polaris_nl.model.evaluate import after
-from polaris_nl.model.formula import Literal
-from polaris_nl.model.state import Mutexes, State
-from polaris_nl.model.text import listed
+from polaris_nl.automaton.edits import SetGoals
+from polaris_nl.model.domain import Action
+from polaris_nl.model.evaluate import effects
+from polaris_nl.model.formula import Goal
+from polaris_nl.model.state import Mutexes
 from polaris_nl.model.wording import Wording
 from polaris_nl.model.world import World
+from polaris_nl.planning.budget import within
+from polaris_nl.planning.place import Place
+from polaris_nl.planning.proposals import Proposals, Trouble
 from polaris_nl.planning.result import Repair
-from polaris_nl.planning.segments import SegmentResult, Segments
+from polaris_nl.planning.segments import Segments
+from polaris_nl.planning.trial import Trial
 
 MOST = 4
 """Ways out that are offered at most."""
-BUDGET_S = 1.0
-"""How long one segment of a way out may take, in seconds."""
+MOST_OF_A_KIND = 2
+"""Ways out of one kind that are offered at most, so that others are, too."""
+BUDGET_S = 2.0
+"""How long ways out of one problem are looked for, in seconds."""
 
 
 class Repairs:
-    """Finds and tries repairs in one world."""
+    """Finds and tries ways out in one world."""
 
     def __init__(
         self, world: World, mutexes: Mutexes, segments: Segments, wording: Wording
     ) -> None:
         self._world = world
-        self._mutexes = mutexes
-        self._segments = segments
         self._wording = wording
+        self._trial = Trial(world, mutexes, segments)
 
-    def for_conflict(
-        self,
-        automaton: Automaton,
-        checkpoint: Checkpoint,
-        state: State,
-        goals: tuple[Literal, ...],
-        core: Sequence[Literal],
-        cancelled: Callable[[], bool],
-    ) -> tuple[Repair, ...]:
-        """Splitting the goals into two ordered checkpoints, or dropping one of them."""
-        if tuple(checkpoint.goals) != goals:
-            return ()  # Quantified goals are split by rewording, not by taking literals out of them.
-        found: list[Repair] = []
-        for goal in reversed(core):
-            found.extend(self._split(automaton, checkpoint, state, goals, goal, cancelled))
-        for goal in reversed(core):
-            found.extend(self._drop(automaton, checkpoint, state, goals, goal, cancelled))
-        return tuple(found[:MOST])
+    def of(self, trouble: Trouble, cancelled: Callable[[], bool]) -> tuple[Repair, ...]:
+        """What leads out of a problem, the best first."""
+        found = Proposals(trouble, self._world, self._wording)
+        tried = self._tried(found, trouble.place, cancelled)
+        return tried or self._tried(found.emptied(), trouble.place, cancelled)
 
-    def for_unreachable(
-        self,
-        automaton: Automaton,
-        transition: Transition,
-        state: State,
-        goals: tuple[Literal, ...],
-        goal: Literal,
-        cancelled: Callable[[], bool],
+    def of_undecided(self, place: Place, cancelled: Callable[[], bool]) -> tuple[Repair, ...]:
+        """What can be decided where all goals at once can't."""
+        found = Proposals(Trouble(place), self._world, self._wording)
+        return self._tried(found.in_single_steps(), place, cancelled)
+
+    def of_choice(
+        self, place: Place, goal: Goal, cancelled: Callable[[], bool]
     ) -> tuple[Repair, ...]:
-        """Waiting for a person to bring the goal about, and all else that only people can."""
-        domain = self._world.domain
-        awaited = tuple(
-            g
-            for g in goals
-            if g == goal or not (state.holds(g) or domain.achievers(g) or g in transition.when)
+        """What leads out of asking for one of a kind of which there is none: leaving that out."""
+        kept = tuple(g for g in place.checkpoint.goals if g != goal)
+        if not kept:
+            emptied = Proposals(Trouble(place), self._world, self._wording).emptied()
+            return self._tried(emptied, place, cancelled)
+        text = f"leave that out and only {self._wording.goals(kept)}"
+        return self._tried(
+            [Repair(text, (SetGoals(place.checkpoint.id, kept),), "drop")], place, cancelled
         )
-        if goal in transition.when or not all(
-            domain.people_can_change(g.predicate) for g in awaited
-        ):
-            return ()
-        if not self._solvable(state.after_event(awaited, self._mutexes), goals, cancelled):
-            return ()
-        edit = SetConditional(transition.id, (*transition.when, *awaited))
-        text = f"wait until {listed([self._wording.event(g) for g in awaited])}"
-        return self._sound(automaton, Repair(text, (edit,)))
 
-    def _split(
-        self,
-        automaton: Automaton,
-        checkpoint: Checkpoint,
-        state: State,
-        goals: tuple[Literal, ...],
-        last: Literal,
-        cancelled: Callable[[], bool],
+    def of_action(
+        self, place: Place, action: Action, cancelled: Callable[[], bool]
     ) -> tuple[Repair, ...]:
-        first = tuple(g for g in goals if g != last)
-        result = self._segments.solve(state, first, BUDGET_S, cancelled)
-        if result.status != "solved":
-            return ()
-        between = self._after(state, result)
-        if not self._solvable(between, (last,), cancelled):
-            return ()
-        incoming = automaton.incoming(checkpoint.id)
-        if incoming is None:
-            return ()
-        name = automaton.fresh_name(f"before {checkpoint.name}")
-        earlier = Checkpoint(automaton.fresh_checkpoint_id(), name, first)
-        edits: tuple[Edit, ...] = (
-            InsertCheckpoint(earlier, incoming.id, automaton.fresh_transition_id()),
-            SetGoals(checkpoint.id, (last,)),
-        )
-        before = listed([self._wording.goal(g) for g in first])
-        text = f"{before} first, and then {self._wording.goal(last)}"
-        return self._sound(automaton, Repair(text, edits))
+        """What leads out of insisting on an action that can't be done: what it brings about, as goals."""
+        operator = self._world.domain.operators[action.operator]
+        made = effects(action, operator, place.state, self._world)
+        wanted = tuple(x for x in made if x.positive and x.args)
+        text = self._wording.goals(wanted)
+        goals = Repair(text, (SetGoals(place.checkpoint.id, wanted),), "change")
+        return self._tried([goals] if wanted else [], place, cancelled)
 
-    def _drop(
-        self,
-        automaton: Automaton,
-        checkpoint: Checkpoint,
-        state: State,
-        goals: tuple[Literal, ...],
-        dropped: Literal,
-        cancelled: Callable[[], bool],
+    def _tried(
+        self, proposals: Iterable[Repair], place: Place, cancelled: Callable[[], bool]
     ) -> tuple[Repair, ...]:
-        kept = tuple(g for g in goals if g != dropped)
-        if not kept or not self._solvable(state, kept, cancelled):
-            return ()
-        text = f"leave out that {self._wording.fact(dropped)}"
-        return self._sound(automaton, Repair(text, (SetGoals(checkpoint.id, kept),)))
+        over = within(BUDGET_S, cancelled)
+        found: list[tuple[int, Repair]] = []
+        kinds: Counter[str] = Counter()
 
-    def _solvable(
-        self, state: State, goals: tuple[Literal, ...], cancelled: Callable[[], bool]
-    ) -> bool:
-        return self._segments.solve(state, goals, BUDGET_S, cancelled).status == "solved"
+        for repair in proposals:
+            if over() or len(found) == MOST:
+                break
+            if kinds[repair.kind] < MOST_OF_A_KIND:
+                failed = self._failed(repair, place, over)
+                if failed is not None:
+                    kinds[repair.kind] += 1
+                    found.append((failed, repair))
+        # What comes after a step that had no plan may have problems of its own, but none of the edit's.
+        least = min((failed for failed, _ in found), default=0)
+        return tuple(repair for failed, repair in found if failed == least)
 
-    def _sound(self, automaton: Automaton, repair: Repair) -> tuple[Repair, ...]:
-        """The repair, unless its edits don't fit or break the program's shape."""
-        try:
-            changed = apply_all(automaton, repair.edits)
-        except EditError:
-            return ()
-        return () if validate(changed, self._world) else (repair,)
-
-    def _after(self, state: State, result: SegmentResult) -> State:
-        for action in result.actions:
-            state = after(action, self._world.domain.operators[action.operator], state, self._world)
-        return state
+    def _failed(self, repair: Repair, place: Place, over: Callable[[], bool]) -> int | None:
+        """How many steps have no plan after an edit; None where it doesn't help, or breaks another step."""
+        outcome = self._trial.of(place.automaton, repair.edits, place.known, over)
+        if outcome is None or outcome.faults:
+            return None
+        before = place.automaton.checkpoints
+        fresh = {c for c in outcome.program.checkpoints if c not in before}
+        if outcome.failed & {place.checkpoint.id, *fresh, *place.known}:
+            return None
+        return len(outcome.failed)

@@ -54,6 +54,15 @@ class PlanEdge:
 
 
 @dataclass(frozen=True, slots=True)
+class Step:
+    """What one action leads to: the state after it, and how that differs from the one before."""
+
+    state: State
+    removed: tuple[Literal, ...]
+    added: tuple[Literal, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Segment:
     """The actions between a checkpoint and the next.
 
@@ -62,6 +71,7 @@ class Segment:
         optimal: whether no plan with fewer actions exists from `before` to the goals.
         before: the state that the segment starts from, its conditional already true.
         after: the state at its end.
+        steps: what each action leads to; follows from the rest.
     """
 
     transition: str
@@ -73,14 +83,27 @@ class Segment:
     optimal: bool
     before: State
     after: State
+    steps: tuple[Step, ...] = field(default=(), compare=False, repr=False)
+
+
+RepairKind = OneOf["split", "drop", "wait", "reorder", "change", "condition", "shape"]
+"""What a way out does: splits a checkpoint in steps, drops goals, waits for a person, changes the order
+of steps, asks for another thing, gives a way another condition, mends the program's shape."""
 
 
 @dataclass(frozen=True, slots=True)
 class Repair:
-    """A way out that has been tried: applying `edits` makes the problem go away."""
+    """A way out that has been tried: applying `edits` makes the problem go away.
+
+    Attributes:
+        text: an imperative, to go after "you could".
+        edits: applied together, by `polaris_nl.automaton.edits.apply_all`.
+        kind: what the edits do, the chief one where they do several things.
+    """
 
     text: str
     edits: tuple[Edit, ...]
+    kind: RepairKind = "drop"
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,8 +112,11 @@ class Problem:
 
     Attributes:
         text: a sentence that a person understands, with a way out.
-        cores: for a conflict, the minimal sets of goals that can't hold together, where known.
+        cores: the minimal sets of goals that can't be met together, the smallest first; of one
+            goal each where goals are out of reach by themselves.
         repairs: verified ways out, the best first.
+        start: facts with which there would be no problem, and which no edit of the program brings
+            about: somebody has to change the world, or tell the robot of it.
     """
 
     cause: Cause
@@ -99,14 +125,20 @@ class Problem:
     transition: str | None = None
     cores: tuple[tuple[Literal, ...], ...] = ()
     repairs: tuple[Repair, ...] = ()
+    start: tuple[Literal, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
 class Warning:
-    """Something legal that may not be meant, such as a conditional that holds already."""
+    """Something legal that may not be meant, such as a conditional that holds already.
+
+    Attributes:
+        repairs: changes that would mend it, each tried, the best first.
+    """
 
     text: str
     transition: str | None = None
+    repairs: tuple[Repair, ...] = ()
 
 
 @dataclass(frozen=True)

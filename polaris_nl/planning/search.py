@@ -1,9 +1,17 @@
-"""Fast Downward's search binary in a child process: everything through pipes, with hard limits."""
+"""Fast Downward's search binary in a child process: everything through pipes, with hard limits.
+
+The child can't write a file, takes no more memory and processor time than it is given, even if this
+process is gone by then, and is killed when its time is over or nobody wants its plan any more.
+`POLARIS_NL_PLANNER` names another search program.
+"""
 
 from __future__ import annotations
 
 import contextlib
+import math
+import os
 import resource
+import signal
 import subprocess
 import time
 from collections.abc import Callable
@@ -22,9 +30,16 @@ MEMORY_BYTES = 2_000_000_000
 POLL_S = 0.05
 """How often a running search asks whether it has been cancelled."""
 
+OVERRIDE = "POLARIS_NL_PLANNER"
+
 _SOLVED = 0
 _UNSOLVABLE = {11, 10}
-_OUT_OF_TIME_OR_SPACE = {12, 20, 21, 22, 23, 24}
+_OUT_OF_TIME = {12, 21, 23, 24, -signal.SIGXCPU}
+_OUT_OF_MEMORY = {20, 22}
+
+_NO_MEMORY = (
+    "The planning took more memory than there is for it; split the step in two, or ask for less."
+)
 
 Status = OneOf["solved", "unsolvable", "undecided", "cancelled"]
 
@@ -35,10 +50,12 @@ class Found:
 
     Attributes:
         plan: the actions as `(operator arg ...)`, for `solved`.
+        reason: for `undecided`, what happened, where it wasn't the time.
     """
 
     status: Status
     plan: tuple[str, ...] = ()
+    reason: str = ""
 
 
 def search(sas: str, engine: str, seconds: float, cancelled: Callable[[], bool]) -> Found:
@@ -70,8 +87,7 @@ def search(sas: str, engine: str, seconds: float, cancelled: Callable[[], bool])
         ) from error
     with child:
         try:
-            with contextlib.suppress(OSError, ValueError):
-                resource.prlimit(child.pid, resource.RLIMIT_AS, (MEMORY_BYTES, MEMORY_BYTES))
+            _limit(child.pid, math.ceil(seconds) + 1)
             plan = _communicate(child, sas, deadline, cancelled)
         finally:
             if child.poll() is None:
@@ -81,13 +97,18 @@ def search(sas: str, engine: str, seconds: float, cancelled: Callable[[], bool])
     return _outcome(child.returncode, plan)
 
 
-@cache
 def binary() -> Path:
-    """The search binary of the up-fast-downward package.
+    """The search program: the one that the environment names, or that of the up-fast-downward package.
 
     Raises:
         PlanningError: it is not installed.
     """
+    named = os.environ.get(OVERRIDE)
+    return Path(named) if named else _packaged()
+
+
+@cache
+def _packaged() -> Path:
     # Only located: importing the package would import unified-planning, which takes two seconds.
     package = find_spec("up_fast_downward")
     if package is None or package.origin is None:
@@ -98,6 +119,19 @@ def binary() -> Path:
             "The planner's search program is missing; install up-fast-downward again."
         )
     return path
+
+
+def _limit(pid: int, seconds: int) -> None:
+    """Limits a child before it gets its problem: memory in bytes, processor time in seconds, no files."""
+    limits = (
+        (resource.RLIMIT_AS, MEMORY_BYTES),
+        (resource.RLIMIT_CPU, seconds),
+        (resource.RLIMIT_FSIZE, 0),
+        (resource.RLIMIT_CORE, 0),
+    )
+    with contextlib.suppress(OSError, ValueError):  # It may be dead already.
+        for limit, most in limits:
+            resource.prlimit(pid, limit, (most, most))
 
 
 def _communicate(
@@ -120,7 +154,9 @@ def _outcome(code: int, output: str) -> Found:
         return Found("solved", tuple(x.strip() for x in output.splitlines() if x.startswith("(")))
     if code in _UNSOLVABLE:
         return Found("unsolvable")
-    if code in _OUT_OF_TIME_OR_SPACE:
+    if code in _OUT_OF_TIME:
         return Found("undecided")
+    if code in _OUT_OF_MEMORY:
+        return Found("undecided", reason=_NO_MEMORY)
     how = f"was ended by signal {-code}" if code < 0 else f"ended with code {code}"
     raise PlanningError(f"The planner {how}; nothing of your program is lost. Try again, or undo.")

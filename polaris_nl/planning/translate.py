@@ -11,7 +11,8 @@ import importlib
 import io
 import pkgutil
 import threading
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from types import ModuleType
 from typing import Any
 
@@ -19,6 +20,7 @@ from polaris_nl.model.errors import PlanningError
 
 _LOCK = threading.RLock()
 _PARTS: dict[str, ModuleType] = {}
+_END = "the end"
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +37,25 @@ class Task:
     plain: bool = True
 
 
+@dataclass(frozen=True, slots=True)
+class Sas:
+    """A translated problem without goals, all of whose variables are kept.
+
+    Attributes:
+        names: of each variable, what its values stand for: `Atom at(cup, table)`, `NegatedAtom ...`
+            or `<none of those>`.
+        mutexes: groups of (variable, value) that exclude each other.
+        operators: name, what has to hold (variable, value), and what changes (variable, value before
+            or -1, value after).
+    """
+
+    names: Sequence[Sequence[str]]
+    mutexes: Sequence[Sequence[tuple[int, int]]]
+    operators: Sequence[tuple[str, Sequence[tuple[int, int]], Sequence[tuple[int, int, int]]]] = (
+        field(repr=False)
+    )
+
+
 def translate(domain: str, problem: str) -> Task:
     """Grounds a problem.
 
@@ -43,21 +64,64 @@ def translate(domain: str, problem: str) -> Task:
     """
     with _LOCK:
         parts = _translator()
-        task = _parse(parts, domain, problem)
-        main = parts["main"]
-        try:
-            parts["normalize"].normalize(task)
-            sas = main.pddl_to_sas(task)
-        except (Exception, SystemExit) as error:
-            raise PlanningError(
-                f"The planner can't use this domain: {_first_line(error)}."
-            ) from error
+        sas = _grounded(parts, _parse(parts, domain, problem))
         if _is_unsolvable(sas):
             return Task("")
         out = io.StringIO()
         sas.output(out)
-        conditional = any(condition for op in sas.operators for *_, condition in op.pre_post)
-        return Task(out.getvalue(), plain=not sas.axioms and not conditional)
+        return Task(out.getvalue(), plain=_is_plain(sas))
+
+
+def translate_without_goals(domain: str, problem: str) -> Sas | None:
+    """Grounds a problem whose goals aren't known yet.
+
+    Returns:
+        The problem, or None where it needs axioms or conditional effects.
+
+    Raises:
+        PlanningError: the translator doesn't support something in the domain; it is named.
+    """
+    with _LOCK:
+        parts = _translator()
+        task = _parse(parts, domain, problem)
+        # The translator stops early where there is nothing to reach, so it gets something that
+        # an action of its own reaches. Neither has a name that PDDL allows.
+        pddl = parts["pddl"]
+        end = pddl.Atom(_END, ())
+        task.predicates.append(pddl.Predicate(_END, []))
+        done = [pddl.Effect([], pddl.Truth(), end)]
+        task.actions.append(pddl.Action(_END, [], 0, pddl.Conjunction([]), done, None))
+        task.goal = pddl.Conjunction([end])
+        options = parts["options"].get_options()
+        options.filter_unimportant_vars = False
+        try:
+            sas = _grounded(parts, task)
+        finally:
+            options.filter_unimportant_vars = True
+        if not _is_plain(sas) or sas.metric:
+            return None
+        return Sas(
+            [tuple(names) for names in sas.variables.value_names],
+            [tuple(group.facts) for group in sas.mutexes],
+            [
+                (op.name[1:-1], op.prevail, [(v, pre, post) for v, pre, post, _ in op.pre_post])
+                for op in sas.operators
+                if op.name[1:-1] != _END
+            ],
+        )
+
+
+def _grounded(parts: dict[str, ModuleType], task: Any) -> Any:
+    try:
+        parts["normalize"].normalize(task)
+        return parts["main"].pddl_to_sas(task)
+    except (Exception, SystemExit) as error:
+        raise PlanningError(f"The planner can't use this domain: {_reason(error)}.") from error
+
+
+def _is_plain(sas: Any) -> bool:
+    conditional = any(condition for op in sas.operators for *_, condition in op.pre_post)
+    return not sas.axioms and not conditional
 
 
 def invariants(domain: str, problem: str) -> list[list[tuple[str, tuple[int | None, ...]]]]:
@@ -107,7 +171,7 @@ def _parse(parts: dict[str, ModuleType], domain: str, problem: str) -> Any:
             read(domain.splitlines(keepends=True)), read(problem.splitlines(keepends=True))
         )
     except (Exception, SystemExit) as error:
-        raise PlanningError(f"The planner can't read this domain: {_first_line(error)}.") from error
+        raise PlanningError(f"The planner can't read this domain: {_reason(error)}.") from error
 
 
 def _is_unsolvable(sas: Any) -> bool:
@@ -116,6 +180,9 @@ def _is_unsolvable(sas: Any) -> bool:
     return bool(names and names[0][:1] == ["Atom dummy(val1)"] and sas.goal.pairs == [(0, 1)])
 
 
-def _first_line(error: BaseException) -> str:
-    lines = [line for line in str(error).splitlines() if line.strip()]
-    return lines[0].strip(" .!") if lines else type(error).__name__
+def _reason(error: BaseException) -> str:
+    """What the translator says, without the places in its own code that it lists first."""
+    lines = [line.strip() for line in str(error).splitlines() if line.strip()]
+    places = [n for n, line in enumerate(lines) if line.startswith("->")]
+    said = lines[places[-1] + 1 :] if places else lines[:1]
+    return " ".join(said).strip(" .!") or type(error).__name__

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 
 from polaris_nl.automaton.automaton import START, Automaton
 from polaris_nl.model.domain import Action
-from polaris_nl.model.evaluate import after
 from polaris_nl.model.formula import Literal
 from polaris_nl.model.state import State
 from polaris_nl.model.world import World
@@ -19,8 +18,9 @@ class _Draft:
     """A node whose children are not made yet."""
 
     action: Action | None
-    before: State
     state: State
+    removed: tuple[Literal, ...] = ()
+    added: tuple[Literal, ...] = ()
     checkpoint: str | None = None
     transition: str | None = None
     when: tuple[Literal, ...] = ()
@@ -33,34 +33,37 @@ def plan_tree(automaton: Automaton, segments: Mapping[str, Segment], world: Worl
     Every checkpoint has a node of its own, even if it costs no action (the map f_m is injective).
     Built without recursion, since a branch may have thousands of actions.
     """
-    root = _Draft(None, world.initial, world.initial, START)
+    root = _Draft(None, world.initial, checkpoint=START)
     waiting = [root]
     while waiting:
         here = waiting.pop()
         for transition in automaton.outgoing(str(here.checkpoint)):
             segment = segments.get(transition.target)
             if segment is not None:
-                waiting.append(_add_segment(here, segment, world))
+                waiting.append(_add_segment(here, segment))
     return _finished(root)
 
 
-def _add_segment(start: _Draft, segment: Segment, world: World) -> _Draft:
+def _add_segment(start: _Draft, segment: Segment) -> _Draft:
     """Hangs a segment's nodes below the checkpoint it starts from and returns its last one."""
-    last = _Draft(None, start.state, segment.before)
-    node, state = start, segment.before
-    for action in segment.actions:
-        following = after(action, world.domain.operators[action.operator], state, world)
-        # The first node's difference includes what the conditional changed.
-        before = start.state if node is start else state
-        last = _Draft(action, before, following)
+    # The first node's difference includes what the conditional changed.
+    before = start.state if segment.when else None
+    node = start
+    for action, step in zip(segment.actions, segment.steps, strict=True):
+        last = _Draft(action, step.state, step.removed, step.added)
+        if before is not None:
+            last.removed, last.added = before.difference(step.state)
+            before = None
         node.children.append(last)
-        node, state = last, following
+        node = last
     if not segment.actions:
-        start.children.append(last)
-    last.checkpoint = segment.target
+        removed, added = before.difference(segment.before) if before is not None else ((), ())
+        node = _Draft(None, segment.before, removed, added)
+        start.children.append(node)
+    node.checkpoint = segment.target
     first = start.children[-1]
     first.transition, first.when = segment.transition, segment.when
-    return last
+    return node
 
 
 def _finished(root: _Draft) -> PlanNode:
@@ -73,14 +76,13 @@ def _finished(root: _Draft) -> PlanNode:
     numbers = {id(draft): number for number, draft in enumerate(order)}
     made: dict[int, PlanNode] = {}
     for draft in reversed(order):
-        removed, added = draft.before.difference(draft.state)
         made[id(draft)] = PlanNode(
             id=f"a{numbers[id(draft)]}",
             action=draft.action,
             checkpoint=draft.checkpoint,
             state=draft.state,
-            removed=removed,
-            added=added,
+            removed=draft.removed,
+            added=draft.added,
             children=tuple(PlanEdge(made[id(c)], c.transition, c.when) for c in draft.children),
         )
     return made[id(root)]

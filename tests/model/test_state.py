@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import itertools
+
 import pytest
 
 from polaris_nl.model.domain import Action
 from polaris_nl.model.errors import FormatError
-from polaris_nl.model.evaluate import after, applicable, effects, ground_goals, holds
+from polaris_nl.model.evaluate import after, applicable, effects, holds
 from polaris_nl.model.formula import Literal, parse_formula, parse_literal
+from polaris_nl.model.goals import ground_goals
 from polaris_nl.model.state import Mutexes, MutexGroup, State
 from polaris_nl.model.world import World
 
@@ -117,5 +120,19 @@ def test_for_all_expands_over_the_entities_that_meet_its_condition(flat: World) 
 
 
 def test_an_alternative_is_no_goal(flat: World) -> None:
-    with pytest.raises(FormatError, match="no goal yet"):
+    with pytest.raises(FormatError, match="is no goal"):
         ground_goals((parse_formula("(or (a) (b))"),), flat.initial, flat)
+
+
+def test_the_pairs_that_exclude_each_other_are_those_of_every_two() -> None:
+    asked = literals(
+        "(at a x)", "(at a y)", "(holding a)", "(at b x)", "(not (holding b))", "(holding c)",
+        "(hand-empty)", "(person-in p x)", "(open x)", "(at a x)", "(person-in p y)", "(person-in q y)",
+    )  # fmt: skip
+    wanted = [
+        (a, b)
+        for a, b in itertools.combinations(asked, 2)
+        if a.positive and b.positive and MUTEXES.exclusive(a, b)
+    ]
+    assert list(MUTEXES.pairs(asked)) == wanted
+    assert len(wanted) > 8

@@ -14,8 +14,8 @@ from polaris_nl.execution.events import Event
 from polaris_nl.model.formula import Literal, parse_formula
 from polaris_nl.model.world import World
 from polaris_nl.model.world_file import load_world
+from polaris_nl.planning.compile import Draft
 from polaris_nl.planning.planner import Planner
-from polaris_nl.planning.result import BranchingPlan
 from polaris_nl.session import Session
 from polaris_nl.snapshot import Snapshot
 
@@ -97,12 +97,12 @@ class GatedPlanner:
         self.asked: list[Automaton] = []
         self.stale: list[bool] = []
 
-    def compile(self, automaton: Automaton, stale: Callable[[], bool]) -> BranchingPlan:
+    def drafts(self, automaton: Automaton, stale: Callable[[], bool]) -> Iterator[Draft]:
         self.asked.append(automaton)
         self.entered.release()
         assert self.gate.wait(LIMIT_S)
         self.stale.append(stale())
-        return self._planner.compile(automaton)
+        yield Draft(self._planner.compile(automaton), True)
 
 
 def goal(text: str) -> Literal:

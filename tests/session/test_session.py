@@ -487,7 +487,7 @@ def test_a_planner_that_fails_is_told_and_the_next_edit_is_planned(
     session: Watched, planner: Planner, error: Exception
 ) -> None:
     class Broken:
-        def compile(self, *_: object) -> None:
+        def drafts(self, *_: object) -> None:
             raise error
 
     session.planner = Broken()  # type: ignore[assignment, misc]

@@ -15,7 +15,7 @@ from polaris_nl.automaton.automaton import Automaton
 from polaris_nl.language.understanding import Understanding
 from polaris_nl.model.world import World
 from polaris_nl.model.world_file import load_world
-from polaris_nl.planning.result import BranchingPlan
+from polaris_nl.planning.compile import Draft
 from polaris_nl.session import Session
 from polaris_tui.app import PolarisApp
 from polaris_tui.pane import Pane
@@ -167,6 +167,6 @@ class GatedPlanner:
         self.gate = threading.Event()
         self.gate.set()
 
-    def compile(self, automaton: Automaton, stale: Callable[[], bool]) -> BranchingPlan:
+    def drafts(self, automaton: Automaton, stale: Callable[[], bool]) -> Iterator[Draft]:
         assert self.gate.wait(LIMIT_S)
-        return self._planner.compile(automaton, stale)  # type: ignore[attr-defined]
+        yield from self._planner.drafts(automaton, stale)  # type: ignore[attr-defined]

@@ -1,0 +1,260 @@
+"""Translated tasks that are used again: one translation for all states and goals of the same entities.
+
+Translating takes longer than searching, and within a program only the state and the goals of a task
+change. So a task is translated once, from the state at the start and without goals, and then aimed:
+its initial values and goal values are replaced. That is right as long as all facts of the new state
+that matter are values of the translated task, or were true all along: what can be reached from such
+a state could be reached from the start, as the translator sees it, who lets nothing become false. Where
+that doesn't hold, the task is translated for itself.
+
+What a segment's task is translated from depends on the entities and on what never changes, and not on
+what was planned before, so plans don't depend on it either.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from polaris_nl.model.domain import Domain
+from polaris_nl.model.formula import (
+    And,
+    Formula,
+    Imply,
+    Literal,
+    Not,
+    Or,
+    Quantified,
+    When,
+    literals_in,
+)
+from polaris_nl.model.state import State
+from polaris_nl.model.world import World
+from polaris_nl.planning.memory import Memory
+from polaris_nl.planning.pddl_text import domain_text, problem_text
+from polaris_nl.planning.translate import Sas, Task, translate, translate_without_goals
+
+MOST_TEXT = 30_000_000
+"""Characters of translated tasks that are remembered."""
+
+
+class Tasks:
+    """The planner's tasks in one world.
+
+    Args:
+        world: the whole world; the state at its start is what shared translations start from.
+    """
+
+    def __init__(self, world: World) -> None:
+        self._initial = world.initial
+        self._domain = domain_text(world.domain)
+        self._asked = _asked_for(world.domain)
+        self._static = frozenset(
+            p for p in world.domain.predicates if not world.domain.robot_can_change(p)
+        )
+        self._shared: Memory[object, Shared] = Memory(MOST_TEXT, lambda key, value: value.size)
+
+    def of(self, world: World, state: State, goals: Sequence[Formula]) -> Task:
+        """The task of making goals true from a state.
+
+        Args:
+            world: the entities that matter.
+            state: the facts about them.
+            goals: closed formulas.
+
+        Raises:
+            PlanningError: the planner can't use the domain.
+        """
+        literals = [g for g in goals if isinstance(g, Literal)]
+        if len(literals) == len(goals):
+            aimed = self._of_shared(world, state).aim(state, literals)
+            if aimed is not None:
+                return aimed
+        return translate(self._domain, problem_text(world, state, goals))
+
+    def _of_shared(self, world: World, state: State) -> Shared:
+        static = frozenset(
+            f for f in state.facts if f.predicate in self._static and f.predicate in self._asked
+        )
+        key = (frozenset(world.entities), static)
+        shared = self._shared.get(key)
+        if shared is None:
+            start = {
+                f
+                for f in self._initial.facts
+                if f.predicate not in self._static and world.entities.keys() >= set(f.args)
+            }
+            facts = static | start
+            sas = translate_without_goals(self._domain, problem_text(world, State(facts), ()))
+            shared = Shared(sas, facts, self._asked)
+            self._shared.put(key, shared)
+        return shared
+
+
+class Shared:
+    """One translated task, to be aimed at many states and goals.
+
+    Args:
+        sas: the translated task, or None where it can't be shared (axioms, conditional effects).
+        facts: the state that it was translated from.
+        asked: the predicates that some condition asks for.
+    """
+
+    def __init__(self, sas: Sas | None, facts: frozenset[Literal], asked: frozenset[str]) -> None:
+        self._sas = sas
+        self._facts = facts
+        self._asked = asked
+        self._places: dict[Literal, tuple[int, int]] = {}
+        self._otherwise: list[int] = []
+        self._texts: Memory[frozenset[int], _Text] = Memory(8)
+        self.size = 1000
+        if sas is not None:
+            for variable, names in enumerate(sas.names):
+                self._read(variable, names)
+            self._causes = _causes(sas)
+            self.size += 400 * len(sas.operators)
+        self._rest = self._outside(facts)
+
+    def aim(self, state: State, goals: Sequence[Literal]) -> Task | None:
+        """The task from another state to some goals; None where it has to be translated for itself."""
+        if self._sas is None or self._outside(state.facts) != self._rest:
+            return None
+        values = self._values(state)
+        if values is None:
+            return None
+        aims: dict[int, int] = {}
+        for goal in goals:
+            place = self._places.get(goal.atom)
+            if place is None:
+                if (goal.atom in self._facts) != (goal.atom in state.facts):
+                    return None
+                if state.holds(goal):
+                    continue  # Nothing ever changes it.
+                return Task("")
+            variable, value = place
+            if not goal.positive:
+                if len(self._sas.names[variable]) != 2:
+                    return None
+                value = 1 - value
+            if aims.setdefault(variable, value) != value:
+                return Task("")  # Two values of one variable: they exclude each other.
+        if not aims:
+            return None
+        return Task(self._text(frozenset(aims)).with_values(values, aims))
+
+    def _read(self, variable: int, names: Sequence[str]) -> None:
+        otherwise = -1
+        for value, name in enumerate(names):
+            kind, _, atom = name.partition(" ")
+            if kind == "Atom":
+                predicate, _, args = atom.rstrip(")").partition("(")
+                literal = Literal(predicate, tuple(args.split(", ")) if args else ())
+                self._places[literal] = (variable, value)
+            else:
+                otherwise = value
+        self._otherwise.append(otherwise)
+
+    def _outside(self, facts: frozenset[Literal]) -> frozenset[Literal]:
+        """The facts that some condition may ask for and that are no value of the task."""
+        return frozenset(f for f in facts if f.predicate in self._asked and f not in self._places)
+
+    def _values(self, state: State) -> list[int] | None:
+        values = list(self._otherwise)
+        taken = set()
+        for fact in state.facts:
+            place = self._places.get(fact)
+            if place is not None:
+                if place[0] in taken:
+                    return None
+                taken.add(place[0])
+                values[place[0]] = place[1]
+        return None if -1 in values else values
+
+    def _text(self, aims: frozenset[int]) -> _Text:
+        """The task's text without what can't matter to its goals."""
+        text = self._texts.get(aims)
+        if text is None:
+            assert self._sas is not None
+            needed, waiting = set(aims), list(aims)
+            while waiting:
+                for cause in self._causes.get(waiting.pop(), ()):
+                    if cause not in needed:
+                        needed.add(cause)
+                        waiting.append(cause)
+            text = _Text.of(self._sas, sorted(needed))
+            self._texts.put(aims, text)
+        return text
+
+
+@dataclass(frozen=True, slots=True)
+class _Text:
+    """The search program's input around the initial and the goal values."""
+
+    variables: Sequence[int]
+    head: str = field(repr=False)
+    tail: str = field(repr=False)
+
+    @classmethod
+    def of(cls, sas: Sas, variables: Sequence[int]) -> _Text:
+        number = {variable: n for n, variable in enumerate(variables)}
+        head = ["begin_version\n3\nend_version\nbegin_metric\n0\nend_metric", str(len(variables))]
+        for variable, n in number.items():
+            names = sas.names[variable]
+            head.append(f"begin_variable\nvar{n}\n-1\n{len(names)}")
+            head.extend((*names, "end_variable"))
+        groups = [
+            [f"{number[v]} {value}" for v, value in group if v in number] for group in sas.mutexes
+        ]
+        groups = [group for group in groups if len({x.split()[0] for x in group}) > 1]
+        head.append(str(len(groups)))
+        for group in groups:
+            head.extend(("begin_mutex_group", str(len(group)), *group, "end_mutex_group"))
+        tail = []
+        for name, prevail, changes in sas.operators:
+            kept = [f"0 {number[v]} {pre} {post}" for v, pre, post in changes if v in number]
+            if kept:
+                # A variable that something needed depends on is needed, so no condition is lost.
+                conditions = [f"{number[v]} {value}" for v, value in prevail if v in number]
+                tail.append(f"begin_operator\n{name}\n{len(conditions)}")
+                tail.extend((*conditions, str(len(kept)), *kept, "1\nend_operator"))
+        count = sum(line.startswith("begin_operator") for line in tail)
+        return cls(variables, "\n".join(head), "\n".join((str(count), *tail, "0", "")))
+
+    def with_values(self, values: Sequence[int], aims: dict[int, int]) -> str:
+        at_first = "\n".join(str(values[v]) for v in self.variables)
+        wanted = [f"{n} {aims[v]}" for n, v in enumerate(self.variables) if v in aims]
+        goal = "\n".join((str(len(wanted)), *wanted))
+        return (
+            f"{self.head}\nbegin_state\n{at_first}\nend_state\n"
+            f"begin_goal\n{goal}\nend_goal\n{self.tail}"
+        )
+
+
+def _causes(sas: Sas) -> dict[int, set[int]]:
+    """For each variable, those that the operators that change it also ask for or change."""
+    found: dict[int, set[int]] = {}
+    for _, prevail, changes in sas.operators:
+        involved = {v for v, _ in prevail} | {v for v, _, _ in changes}
+        for variable, _, _ in changes:
+            found.setdefault(variable, set()).update(involved)
+    return found
+
+
+def _asked_for(domain: Domain) -> frozenset[str]:
+    """The predicates of preconditions and of effects' conditions."""
+    found: set[str] = set()
+    for operator in domain.operators.values():
+        found.update(x.predicate for x in literals_in(operator.precondition))
+        waiting = [operator.effect]
+        while waiting:
+            formula = waiting.pop()
+            if isinstance(formula, When):
+                found.update(x.predicate for x in literals_in(formula.condition))
+                waiting.append(formula.effect)
+            elif isinstance(formula, And | Or):
+                waiting.extend(formula.parts)
+            elif isinstance(formula, Quantified):
+                waiting.append(formula.body)
+            elif isinstance(formula, Not | Imply):
+                found.update(x.predicate for x in literals_in(formula))
+    return frozenset(found)
