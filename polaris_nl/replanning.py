@@ -37,6 +37,8 @@ class Published:
     whole: bool = True
 
 
+CLOSE_S = 5.0
+"""How long closing waits for what can't be broken off, in seconds."""
 Publish = Callable[[Published], None]
 
 
@@ -71,12 +73,12 @@ class Replanner:
             self._changed.notify()
 
     def close(self) -> None:
-        """Cancels what is being planned and ends the thread."""
+        """Cancels what is being planned and ends the thread, or leaves it where it doesn't end soon."""
         with self._changed:
             self._closed = True
             self._changed.notify()
         if self._thread is not None:
-            self._thread.join()
+            self._thread.join(CLOSE_S)
 
     def _work(self) -> None:
         while True:

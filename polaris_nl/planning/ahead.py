@@ -28,6 +28,8 @@ from polaris_nl.planning.translate import translate
 
 MOST_DISPLACED = 2_000
 """Facts that one event may displace; with more, it isn't planned ahead over."""
+MOST_DENIED = 2
+"""Goals of a sequence that may be negative: the translator counts all combinations of what may hold instead."""
 MOST_REMEMBERED = 2_000
 _STAGE = "polaris-stage-"
 _REACH = "polaris-reach-"
@@ -103,7 +105,8 @@ class Ahead:
         named = [x for stage in stages for x in (*stage.goals, *stage.when)]
         world, start = self._projection.of(state, named)
         domain = self._extended(world, stages)
-        if domain is None:
+        denied = sum(not goal.positive for stage in stages for goal in stage.goals)
+        if domain is None or denied > MOST_DENIED:
             return None
         first = Literal(f"{_STAGE}0")
         goals = (*stages[-1].goals, Literal(f"{_STAGE}{len(stages) - 1}"))

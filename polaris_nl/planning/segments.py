@@ -20,7 +20,7 @@ from polaris_nl.planning.result import Step
 from polaris_nl.planning.search import OPTIMAL, OPTIMAL_ANY, QUICK, search
 from polaris_nl.planning.simulate import Simulator
 from polaris_nl.planning.tasks import Tasks
-from polaris_nl.planning.translate import Task
+from polaris_nl.planning.translate import END, Task
 
 BUDGET_S = 5.0
 """How long one segment may take, in seconds: most of it for a shortest plan, the rest for any plan."""
@@ -210,7 +210,7 @@ class Segments:
                 return replace(before, sought_s=sought_s)
             left = max(deadline - time.monotonic(), sought_s * 0.3)
             found = search(task.sas, QUICK, left, cancelled)
-        actions = tuple(parse_action(text) for text in found.plan)
+        actions = tuple(parse_action(text) for text in found.plan if text != f"({END})")
         if before is not None and optimal and len(before.actions) == len(actions):
             actions = before.actions
         return SegmentResult(found.status, actions, optimal, found.reason, sought_s=sought_s)

@@ -13,10 +13,11 @@ what was planned before, so plans don't depend on it either.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from polaris_nl.model.domain import Domain
+from polaris_nl.model.errors import PlanningError
 from polaris_nl.model.formula import (
     And,
     Formula,
@@ -32,10 +33,19 @@ from polaris_nl.model.state import State
 from polaris_nl.model.world import World
 from polaris_nl.planning.memory import Memory
 from polaris_nl.planning.pddl_text import domain_text, problem_text
-from polaris_nl.planning.translate import Sas, Task, translate, translate_without_goals
+from polaris_nl.planning.translate import (
+    END,
+    Sas,
+    SasOperator,
+    Task,
+    translate,
+    translate_without_goals,
+)
 
 MOST_TEXT = 30_000_000
 """Characters of translated tasks that are remembered."""
+MOST_DENIED = 6
+"""Negative goals of a task of its own: the translator counts all combinations of what may hold instead."""
 
 
 class Tasks:
@@ -70,6 +80,10 @@ class Tasks:
             aimed = self._of_shared(world, state).aim(state, literals)
             if aimed is not None:
                 return aimed
+        if sum(not g.positive for g in literals) > MOST_DENIED:
+            raise PlanningError(
+                "That is too much at once that is not to be so; split the step in several."
+            )
         return translate(self._domain, problem_text(world, state, goals))
 
     def _of_shared(self, world: World, state: State) -> Shared:
@@ -123,6 +137,7 @@ class Shared:
         if values is None:
             return None
         aims: dict[int, int] = {}
+        banned: dict[int, set[int]] = {}
         for goal in goals:
             place = self._places.get(goal.atom)
             if place is None:
@@ -134,10 +149,15 @@ class Shared:
             variable, value = place
             if not goal.positive:
                 if len(self._sas.names[variable]) != 2:
-                    return None
+                    banned.setdefault(variable, set()).add(value)
+                    continue
                 value = 1 - value
             if aims.setdefault(variable, value) != value:
                 return Task("")  # Two values of one variable: they exclude each other.
+        if any(aims[variable] in banned.pop(variable) for variable in aims.keys() & banned):
+            return Task("")
+        if banned:
+            return Task(_without(self._sas, banned).text(values, aims))
         if not aims:
             return None
         return Task(self._text(frozenset(aims)).with_values(values, aims))
@@ -175,13 +195,7 @@ class Shared:
         text = self._texts.get(aims)
         if text is None:
             assert self._sas is not None
-            needed, waiting = set(aims), list(aims)
-            while waiting:
-                for cause in self._causes.get(waiting.pop(), ()):
-                    if cause not in needed:
-                        needed.add(cause)
-                        waiting.append(cause)
-            text = _Text.of(self._sas, sorted(needed))
+            text = _Text.of(self._sas, _needed(aims, self._causes))
             self._texts.put(aims, text)
         return text
 
@@ -220,7 +234,7 @@ class _Text:
         count = sum(line.startswith("begin_operator") for line in tail)
         return cls(variables, "\n".join(head), "\n".join((str(count), *tail, "0", "")))
 
-    def with_values(self, values: Sequence[int], aims: dict[int, int]) -> str:
+    def with_values(self, values: Sequence[int], aims: Mapping[int, int]) -> str:
         at_first = "\n".join(str(values[v]) for v in self.variables)
         wanted = [f"{n} {aims[v]}" for n, v in enumerate(self.variables) if v in aims]
         goal = "\n".join((str(len(wanted)), *wanted))
@@ -228,6 +242,55 @@ class _Text:
             f"{self.head}\nbegin_state\n{at_first}\nend_state\n"
             f"begin_goal\n{goal}\nend_goal\n{self.tail}"
         )
+
+
+@dataclass(frozen=True, slots=True)
+class _Without:
+    """A task in which variables must not have some values at the end.
+
+    A goal of the search program is one value of a variable. So there is an end, after which nothing moves any
+    more, and in which each such variable is looked at once. That makes all plans longer by the same, and
+    leaves the shortest ones the shortest; the translator's own way counts every combination of other values.
+    """
+
+    sas: Sas
+    aims: Mapping[int, int]
+
+    def text(self, values: Sequence[int], aims: Mapping[int, int]) -> str:
+        """The search program's input from some values to some others."""
+        wanted = {**aims, **self.aims}
+        variables = _needed(wanted, _causes(self.sas))
+        first = [*values, *(0 for _ in range(len(self.sas.names) - len(values)))]
+        return _Text.of(self.sas, variables).with_values(first, wanted)
+
+
+def _without(sas: Sas, banned: Mapping[int, set[int]]) -> _Without:
+    over = len(sas.names)
+    names = [*sas.names, ("Atom working()", "Atom ending()")]
+    working = [(name, (*prevail, (over, 0)), changes) for name, prevail, changes in sas.operators]
+    ending: list[SasOperator] = [(END, (), ((over, 0, 1),))]
+    aims = {}
+    for variable, values in sorted(banned.items()):
+        looked = len(names)
+        names.append(("NegatedAtom looked()", "Atom looked()"))
+        aims[looked] = 1
+        ending += [
+            (END, ((over, 1), (variable, value)), ((looked, 0, 1),))
+            for value in range(len(sas.names[variable]))
+            if value not in values
+        ]
+    return _Without(Sas(names, sas.mutexes, [*working, *ending]), aims)
+
+
+def _needed(aims: Iterable[int], causes: Mapping[int, set[int]]) -> list[int]:
+    """The variables on which those of some goals depend, in order."""
+    needed, waiting = set(aims), list(aims)
+    while waiting:
+        for cause in causes.get(waiting.pop(), ()):
+            if cause not in needed:
+                needed.add(cause)
+                waiting.append(cause)
+    return sorted(needed)
 
 
 def _causes(sas: Sas) -> dict[int, set[int]]:

@@ -20,7 +20,8 @@ from polaris_nl.model.errors import PlanningError
 
 _LOCK = threading.RLock()
 _PARTS: dict[str, ModuleType] = {}
-_END = "the end"
+END = "the end"
+"""The name of actions that are no robot's; no PDDL file can have one that is called so."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,6 +38,9 @@ class Task:
     plain: bool = True
 
 
+SasOperator = tuple[str, Sequence[tuple[int, int]], Sequence[tuple[int, int, int]]]
+
+
 @dataclass(frozen=True, slots=True)
 class Sas:
     """A translated problem without goals, all of whose variables are kept.
@@ -51,9 +55,7 @@ class Sas:
 
     names: Sequence[Sequence[str]]
     mutexes: Sequence[Sequence[tuple[int, int]]]
-    operators: Sequence[tuple[str, Sequence[tuple[int, int]], Sequence[tuple[int, int, int]]]] = (
-        field(repr=False)
-    )
+    operators: Sequence[SasOperator] = field(repr=False)
 
 
 def translate(domain: str, problem: str) -> Task:
@@ -87,10 +89,10 @@ def translate_without_goals(domain: str, problem: str) -> Sas | None:
         # The translator stops early where there is nothing to reach, so it gets something that
         # an action of its own reaches. Neither has a name that PDDL allows.
         pddl = parts["pddl"]
-        end = pddl.Atom(_END, ())
-        task.predicates.append(pddl.Predicate(_END, []))
+        end = pddl.Atom(END, ())
+        task.predicates.append(pddl.Predicate(END, []))
         done = [pddl.Effect([], pddl.Truth(), end)]
-        task.actions.append(pddl.Action(_END, [], 0, pddl.Conjunction([]), done, None))
+        task.actions.append(pddl.Action(END, [], 0, pddl.Conjunction([]), done, None))
         task.goal = pddl.Conjunction([end])
         options = parts["options"].get_options()
         options.filter_unimportant_vars = False
@@ -106,7 +108,7 @@ def translate_without_goals(domain: str, problem: str) -> Sas | None:
             [
                 (op.name[1:-1], op.prevail, [(v, pre, post) for v, pre, post, _ in op.pre_post])
                 for op in sas.operators
-                if op.name[1:-1] != _END
+                if op.name[1:-1] != END
             ],
         )
 
