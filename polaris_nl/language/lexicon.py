@@ -30,7 +30,7 @@ _TYPE_NOUNS = {
         "nobody",
     ),
     "object": ("object", "thing", "item", "everything", "anything", "something", "nothing"),
-    "container": ("container",),
+    "container": ("container", "everything"),
     "surface": ("surface",),
     "message": ("message",),
 }

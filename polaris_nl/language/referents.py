@@ -60,7 +60,8 @@ class Referents:
         if mention.quantifier == "all" and not condition:
             return self._every(mention, types, names, scope)
         if mention.quantifier in ("all", "both") or (mention.plural and not mention.number):
-            if mention.quantifier == "both" and len(names) > 2:
+            # "Both the cup and the plate" says it of a list, so that each of them is one.
+            if mention.quantifier == "both" and len(names) != 2 and (names[1:] or mention.plural):
                 return self._several(names, mention, scope, 2)
             return Meant(tuple(names))
         if mention.number == len(names):
@@ -223,6 +224,7 @@ class Referents:
                 return Meant((user.name,))
             people = [p.name for p in self._world.of_type("person")]
             return self._asked_who(people, mention, scope)
+        both = mention.pronoun.endswith("both") or mention.pronoun.startswith("both")
         if (
             mention.pronoun in _PLURAL
             and scope.group
@@ -241,7 +243,8 @@ class Referents:
         fitting = [
             r
             for r in reversed(scope.referents)
-            if self.is_a(r, types)
+            if not both
+            and self.is_a(r, types)
             and (not gender or self._world.entities[r].gender in (gender, ""))
         ]
         if fitting:
@@ -275,6 +278,8 @@ class Referents:
         if self._in_a_region(mention, scope):
             return Meant(tuple(names))
         kind = mention.kind or (types[0] if types else "object")
+        if types and kind in self._world.domain.types:
+            kind = types[0]  # "Close everything" is about what can be closed.
         if not mention.kind and any(c.rank < KIND_RANK for c in mention.candidates):
             # "Every bottle", where the only bottle is called just so: its name is as good as a kind.
             if len(names) != 1:

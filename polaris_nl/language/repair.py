@@ -74,9 +74,10 @@ class Repairs:
             if bare[at] == "'s":  # A wrong apostrophe: "the CD's" are several.
                 yield [*bare[: at - 1], bare[at - 1] + "s", *bare[at + 1 :]]
         yield from self._nouns(tokens, mentions)
+        counting = {tokens[m.start] for there in mentions for m in there if m.number and m.plural}
         for words in (bare, tokens):
             for at, word in enumerate(words):
-                for other in self._alike.get(word, ()):
+                for other in () if word in counting else self._alike.get(word, ()):
                     yield [*words[:at], other, *words[at + 1 :]]
 
     def _nouns(

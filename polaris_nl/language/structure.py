@@ -65,7 +65,9 @@ class Builder:
         Raises:
             Misfit: it is a second "otherwise".
         """
-        if step.done and set(step.goals) <= set(self.program.checkpoints[self.here].goals):
+        asked = self.program.checkpoints[self.here].goals
+        again = step.done or (step.role == "then" and bool(step.goals) and not step.when)
+        if again and set(step.goals) <= set(asked):
             return
         if step.role == "else":
             self._otherwise(step)
