@@ -33,7 +33,7 @@ def planner_type(domain: Domain, kind: str) -> str:
 
 def domain_text(domain: Domain) -> str:
     """The domain for the planner."""
-    if not domain.object_is_a_type:
+    if domain.source and not domain.object_is_a_type:
         return domain.source
     types = " ".join(_type_line(domain, kind) for kind in domain.types)
     predicates = " ".join(
@@ -41,7 +41,7 @@ def domain_text(domain: Domain) -> str:
     )
     operators = "\n".join(_operator(domain, op) for op in domain.operators.values())
     return (
-        f"(define (domain {domain.name}) (:requirements :adl)\n(:types {types})\n"
+        f"(define (domain {domain.name}) (:requirements :adl)\n(:types {types})\n{_constants(domain)}"
         f"(:predicates {predicates})\n{operators})"
     )
 
@@ -74,6 +74,11 @@ def formula_text(domain: Domain, formula: Formula) -> str:
         variables = _variables(domain, formula.variables)
         return f"({formula.quantifier} ({variables}) {formula_text(domain, formula.body)})"
     return str(formula)
+
+
+def _constants(domain: Domain) -> str:
+    named = (f"{n} - {planner_type(domain, kind)}" for n, kind in sorted(domain.constants.items()))
+    return f"(:constants {' '.join(named)})\n" if domain.constants else ""
 
 
 def _texts(domain: Domain, formulas: Iterable[Formula]) -> str:
