@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 
 from polaris_nl.answers import STILL_PLANNING, answer_query, change_in_words, run_in_words
 from polaris_nl.answers.about_goals import possible_in_words, problem_of, with_goals
+from polaris_nl.answers.contrast import CONTRASTS, answer_contrast
 from polaris_nl.automaton.automaton import Automaton
 from polaris_nl.automaton.edit_json import edit_json
 from polaris_nl.automaton.edits import Edit, ReplaceProgram
@@ -274,6 +275,10 @@ class Session:
                 return interpretation.say
             if interpretation.query.kind in ("able", "why-not"):
                 return self._possible(interpretation.query, after)
+            if interpretation.query.kind in CONTRASTS:
+                return answer_contrast(
+                    interpretation.query, after.automaton, after.plan, lambda: self.planner, self.wording
+                )
             back = self.understanding.read_back(after.automaton)
             return answer_query(
                 interpretation.query, after.automaton, after.plan, self.world, self.wording, back

@@ -13,6 +13,7 @@ from polaris_nl.language.clauses import Clause
 from polaris_nl.language.commands import Softeners
 from polaris_nl.language.common import Common
 from polaris_nl.language.dialogue import Dialogue
+from polaris_nl.language.foils import FOIL_KINDS, FOILS, foil, never
 from polaris_nl.language.interpretation import Interpretation, Query, QueryKind
 from polaris_nl.language.mention import Candidate, Mention
 from polaris_nl.language.patterns import Match, Patterns
@@ -134,6 +135,26 @@ def answer_to(
     return None
 
 
+def contrast_asked(
+    language: Understanding,
+    utterance: str,
+    asking: Asking,
+    tokens: Sequence[str],
+    program: Automaton,
+    dialogue: Dialogue,
+) -> tuple[Interpretation, Dialogue] | None:
+    """The answer to "why don't you ... first" and the like, which must not be taken for a request."""
+    if "why" not in tokens:
+        return None
+    try:
+        answer = answer_to(language, utterance, asking, tokens, program, dialogue)
+    except Unclear:
+        return None
+    query = answer[0].query if answer is not None else None
+    contrasts = query is not None and query.kind in FOIL_KINDS
+    return answer if contrasts else None
+
+
 def _answer(
     utterance: str, query: Query, language: Understanding, program: Automaton, dialogue: Dialogue
 ) -> tuple[Interpretation, Dialogue]:
@@ -212,6 +233,10 @@ class _Reader:
             return Query("next", checkpoint=self._dialogue.asked)
         if intent == "plan":
             return self._case(slots, tokens)
+        if intent in FOILS:
+            return foil(match, tokens, self._goals, self._language.world)
+        if intent == "what-if-never":
+            return never(match, tokens, self._condition)
         if intent == "is-it":
             span = _span(slots["f"])
             statement = tokens[span[0] : span[1]]
@@ -224,6 +249,9 @@ class _Reader:
         mention = slots["x"]
         assert isinstance(mention, Mention)
         return self._about_entity(intent, mention, tokens)
+
+    def _condition(self, part: tuple[str, ...]) -> tuple[Literal, ...]:
+        return _condition(self._language, part, (0, len(part)), self._scope)
 
     def _case(self, slots: dict[str, object] | object, tokens: tuple[str, ...]) -> Query | None:
         assert isinstance(slots, dict)

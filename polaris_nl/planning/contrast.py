@@ -197,7 +197,8 @@ class _Trial:
         """Whether a segment before this one brings the wanted facts about."""
         above = [t.target for t in self.automaton.path(checkpoint)][:-1]
         segments = [self.plan.segments[c] for c in above if c in self.plan.segments]
-        return any((self._reach(s.before, s.actions, self.foil.wanted) or -1) >= 0 for s in segments)
+        reached = (self._reach(s.before, s.actions, self.foil.wanted) for s in segments)
+        return any(at is not None and at >= 0 for at in reached)
 
     # Planning
 
@@ -258,7 +259,8 @@ class _Trial:
             return Contrast("undecided", target)
         lost = tuple(c for c in self.plan.segments if c not in plan.segments)
         extra, more, less = 0, (), ()
-        for leaf in self.automaton.leaves():
+        changed = self.automaton.subtree(target or source)
+        for leaf in (c for c in changed if not self.automaton.outgoing(c)):
             if leaf not in plan.segments or leaf not in self.plan.segments:
                 continue
             ours = _along(self.automaton, self.plan, leaf)
