@@ -277,7 +277,11 @@ class Session:
                 return self._possible(interpretation.query, after)
             if interpretation.query.kind in CONTRASTS:
                 return answer_contrast(
-                    interpretation.query, after.automaton, after.plan, lambda: self.planner, self.wording
+                    interpretation.query,
+                    after.automaton,
+                    after.plan,
+                    lambda: self.planner,
+                    self.wording,
                 )
             back = self.understanding.read_back(after.automaton)
             return answer_query(

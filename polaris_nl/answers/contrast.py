@@ -1,4 +1,4 @@
-"""Answers to questions that hold the plan against another one: "why don't you ... first?", "what if she never ...?"."""
+"""Answers to "why don't you ... first?", "why ... before ...?", "what if she never ...?" and the like."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 from polaris_nl.automaton.automaton import START, Automaton
 from polaris_nl.execution.settings import RunSettings
 from polaris_nl.language.interpretation import Query
-from polaris_nl.model.domain import Action
 from polaris_nl.model.formula import Literal
 from polaris_nl.model.text import listed, sentence
 from polaris_nl.model.wording import Wording
@@ -28,7 +27,7 @@ CONTRASTS: dict[str, Way | None] = {
 }
 """The kinds of questions that are answered here, with how their foil goes."""
 _SPOKEN_EXTRAS = 3
-"""Actions that only the foil has, said one by one; more are only counted."""
+"""Actions that only one of two plans has, said one by one; more are only counted."""
 _UNDECIDED = "I couldn't find that out in time; ask me again."
 
 
@@ -118,23 +117,25 @@ def _possible(
     if found.lost:
         names = listed([f'"{automaton.checkpoints[c].name}"' for c in found.lost])
         return sentence(f"if I {ahead}, I can't do {names} any more")
-    still = f", and I would still have to {wording.goals(foil.fact)}" if found.still else ""
-    if found.extra > 0:
-        also = _also(found.more, wording)
-        count = _more(found.extra, "more")
-        return sentence(f"I could {ahead}{still}, but it would take {count}{also}")
-    length = f"be {_more(-found.extra, 'shorter')}" if found.extra < 0 else "be as short"
-    done = _to_have_it(found, foil, automaton, wording)
+    could = f"I could {ahead}"
     if found.still:
-        return sentence(f"I could {ahead}{still}; it would {length}{done}")
-    return sentence(f"I could {ahead}: it would {length}{done}")
+        could += f", but I would still have to {wording.goals(foil.fact)}"
+    if found.extra > 0:
+        length = f"take {_more(found.extra, 'more')}{_also(found, wording)}"
+        return sentence(f"{could}, {'and' if found.still else 'but'} it would {length}")
+    length = f"be {_more(-found.extra, 'shorter')}" if found.extra < 0 else "be as short"
+    return sentence(f"{could}, and it would {length}{_to_have_it(found, foil, automaton, wording)}")
 
 
-def _also(more: Sequence[Action], wording: Wording) -> str:
-    said = [wording.action(a) for a in dict.fromkeys(more)]
-    if not said or len(said) > _SPOKEN_EXTRAS:
+def _also(found: Contrast, wording: Wording) -> str:
+    """What only one of the two plans has, where that is little."""
+    more = [wording.action(a) for a in dict.fromkeys(found.more)]
+    less = [wording.action(a) for a in dict.fromkeys(found.less)]
+    if not more or len(more) + len(less) > _SPOKEN_EXTRAS:
         return ""
-    return f": I would have to {listed(said)} besides"
+    if not less:
+        return f": I would have to {listed(more)} besides"
+    return f": I would {listed(more)}, but not {listed(less)}"
 
 
 def _more(count: int, word: str) -> str:
@@ -192,14 +193,13 @@ def _waiting(
         onward = _onward(here.otherwise.target, automaton, plan, wording)
         any_of = listed([x for x in (missing, others) if x], "or")
         return sentence(f"{where} I don't wait: unless {any_of} by then, I {onward} at once")
-    patience = f"for {_time(wait_s)}" if wait_s is not None else "for as long as it takes"
-    waits_for = f"{where} I wait {patience}"
     if wait_s is None:
-        return sentence(f"{waits_for}, until {listed([x for x in (missing, others) if x], 'or')}")
-    still = f"; if {others} meanwhile, I go on from there" if others else ""
+        any_of = listed([x for x in (missing, others) if x], "or")
+        return sentence(f"{where} I wait for as long as it takes, until {any_of}")
+    in_case = f", in case {others}" if others else ""
     return (
-        f"{sentence(f'{waits_for}{still}')} Then I stop where I am and say that nothing came. "
-        'Say "otherwise" and what to do, and I do that instead of waiting.'
+        f"{sentence(f'{where} I wait for {_time(wait_s)}{in_case}')} Then I stop where I am and say "
+        'that nothing came. Say "otherwise" and what to do, and I do that instead of waiting.'
     )
 
 

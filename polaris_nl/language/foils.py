@@ -54,9 +54,7 @@ def foil(
     return Query(kind, goals=wanted, others=held_against)
 
 
-def _same_with(
-    goals: Sequence[Literal], mention: Mention, world: World
-) -> tuple[Literal, ...]:
+def _same_with(goals: Sequence[Literal], mention: Mention, world: World) -> tuple[Literal, ...]:
     """The goals about another thing: "take the cup before the plate"."""
     best = min((c.rank for c in mention.candidates), default=0)
     for name in (c.entity for c in mention.candidates if c.rank == best):

@@ -34,9 +34,7 @@ def barred(world: World, literal: Literal) -> World | None:
     parameters = domain.predicates[literal.predicate].parameters
     predicates = {**domain.predicates, BARRED: Predicate(BARRED, parameters)}
     changed: Domain = replace(domain, operators=operators, predicates=predicates, source="")
-    return replace(
-        world, domain=changed, facts=world.facts | {Literal(BARRED, literal.args)}
-    )
+    return replace(world, domain=changed, facts=world.facts | {Literal(BARRED, literal.args)})
 
 
 def _without(operator: Operator, literal: Literal) -> Operator | None:

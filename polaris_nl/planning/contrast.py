@@ -10,17 +10,17 @@ the program would have to forgo is what the foil's own plan leaves out.
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal as OneOf
 
 from polaris_nl.automaton.automaton import START, Automaton, Checkpoint, Transition
 from polaris_nl.model.domain import Action
-from polaris_nl.model.evaluate import after
-from polaris_nl.model.formula import Literal
+from polaris_nl.model.evaluate import after, ground_goals
+from polaris_nl.model.formula import Goal, Literal
 from polaris_nl.model.state import State
 from polaris_nl.planning.barred import barred
+from polaris_nl.planning.insisting import along, insisting, only_in
 from polaris_nl.planning.planner import Planner
 from polaris_nl.planning.reasons import Step
 from polaris_nl.planning.result import BranchingPlan
@@ -124,6 +124,34 @@ def _reached(
     return None
 
 
+def earlier_place(
+    planner: Planner, automaton: Automaton, plan: BranchingPlan, goals: Sequence[Goal], last: str
+) -> Contrast | None:
+    """The latest checkpoint before `last` after which goals can be met, and what that would forgo.
+
+    For goals that can't be met after `last`: an earlier step may have used up what they need. After
+    Eifler, Cashmore, Hoffmann, Magazzeni and Steinmetz, "A New Approach to Plan-Space Explanation"
+    (AAAI 2020): to have one thing, others are forgone.
+
+    Returns:
+        A contrast with the checkpoint, the actions there in `prefix`, and `lost`; None where there
+        is no such place.
+    """
+    path = [START, *(t.target for t in automaton.path(last))]
+    for checkpoint in reversed(path[:-1]):
+        segment = plan.segments.get(checkpoint)
+        if segment is None and checkpoint != START:
+            continue
+        state = segment.after if segment else planner.world.initial
+        wanted = ground_goals(goals, state, planner.world)
+        found = planner.segment(state, wanted)
+        if found.status == "solved":
+            trial = planner.compile(insisting(automaton, checkpoint, None, found.actions))
+            lost = tuple(c for c in plan.segments if c not in trial.segments)
+            return Contrast("possible", checkpoint, found.actions, len(found.actions), lost=lost)
+    return None
+
+
 @dataclass(frozen=True)
 class _Trial:
     planner: Planner
@@ -165,7 +193,7 @@ class _Trial:
         if all(map(segment.before.holds, wanted)):
             return Contrast("holds", step.checkpoint)
         own = self._reach(segment.before, segment.actions, wanted)
-        if own is not None and own < step.at or self._earlier(step.checkpoint):
+        if (own is not None and own < step.at) or self._earlier(step.checkpoint):
             return Contrast("already", step.checkpoint)
         result = self._without(step, segment.before, wanted)
         if result is None:
@@ -207,9 +235,7 @@ class _Trial:
             return SegmentResult("solved", (), True)
         return self.planner.segment(state, goals)
 
-    def _without(
-        self, step: Step, state: State, goals: Sequence[Literal]
-    ) -> SegmentResult | None:
+    def _without(self, step: Step, state: State, goals: Sequence[Literal]) -> SegmentResult | None:
         """A plan on which the plan's facts don't come about, or None where that can't be planned."""
         segment = self.plan.segments[step.checkpoint]
         start = self._after(segment.before, segment.actions[: step.at])
@@ -253,21 +279,23 @@ class _Trial:
     # The foil as a program
 
     def _compared(self, source: str, target: str | None, prefix: tuple[Action, ...]) -> Contrast:
-        trial = _insisting(self.automaton, source, target, prefix)
+        trial = insisting(self.automaton, source, target, prefix)
         plan = self.planner.compile(trial, self.cancelled)
         if self.cancelled() or plan.status == "undecided":
             return Contrast("undecided", target)
         lost = tuple(c for c in self.plan.segments if c not in plan.segments)
-        extra, more, less = 0, (), ()
+        extra = 0
+        more: tuple[Action, ...] = ()
+        less: tuple[Action, ...] = ()
         changed = self.automaton.subtree(target or source)
         for leaf in (c for c in changed if not self.automaton.outgoing(c)):
             if leaf not in plan.segments or leaf not in self.plan.segments:
                 continue
-            ours = _along(self.automaton, self.plan, leaf)
-            theirs = _along(trial, plan, leaf)
+            ours = along(self.automaton, self.plan, leaf)
+            theirs = along(trial, plan, leaf)
             if abs(len(theirs) - len(ours)) >= abs(extra):
                 extra = len(theirs) - len(ours)
-                more, less = _only(theirs, ours), _only(ours, theirs)
+                more, less = only_in(theirs, ours), only_in(ours, theirs)
         return Contrast("possible", target, prefix, extra, more, less, lost=lost)
 
     def _reach(
@@ -280,42 +308,3 @@ class _Trial:
             operator = self.planner.world.domain.operators[action.operator]
             state = after(action, operator, state, self.planner.world)
         return state
-
-
-def _insisting(
-    automaton: Automaton, source: str, target: str | None, prefix: Sequence[Action]
-) -> Automaton:
-    """The program with actions insisted on before a checkpoint, or before all that follows `source`."""
-    moved = [t for t in automaton.outgoing(source) if target in (None, t.target)]
-    first = moved[0] if target is not None else None
-    trial, at = automaton, source
-    for number, action in enumerate(prefix):
-        made = Checkpoint(
-            trial.fresh_checkpoint_id(), trial.fresh_name("meanwhile"), action=action
-        )
-        when = first.when if first is not None and not number else ()
-        onward = Transition(trial.fresh_transition_id(), at, made.id, when)
-        trial, at = trial.with_checkpoint(made).with_transition(onward), made.id
-    if not prefix:
-        return automaton
-    for transition in moved:
-        when = () if transition == first else transition.when
-        trial = trial.with_transition(replace(transition, source=at, when=when))
-    return trial
-
-
-def _along(automaton: Automaton, plan: BranchingPlan, leaf: str) -> list[Action]:
-    path = (t.target for t in automaton.path(leaf))
-    return [a for target in path for a in plan.segments[target].actions]
-
-
-def _only(these: Sequence[Action], those: Sequence[Action]) -> tuple[Action, ...]:
-    """The actions that are in one list more often than in another, in order."""
-    left = Counter(those)
-    found = []
-    for action in these:
-        if left[action]:
-            left[action] -= 1
-        else:
-            found.append(action)
-    return tuple(found)

@@ -1,11 +1,11 @@
 """Why an action is in a plan: the causal links from what it brings about to the goals that need it.
 
 A causal link is an action, a fact that it makes true and a later action or goal that needs the fact
-(McAllester and Rosenblitt, "Systematic Nonlinear Planning", AAAI 1991). Links alone say too much: the
-way to the kitchen is linked to everything that is done after the kitchen. So an action is only said
-to serve a goal that is missed without it, where all that can't be done without it is left out, too
-(greedy action elimination: Nakhost and Mueller, "Action Elimination and Plan Neighborhood Graph
-Search", ICAPS 2010).
+(McAllester and Rosenblitt, "Systematic Nonlinear Planning", AAAI 1991). Links alone say too much:
+the way to the kitchen is linked to everything that is done after the kitchen. So an action is only
+said to serve a goal if a chain of links leads there on which every action is needed: the goal is
+missed without it, where all that can't be done without it is left out, too (greedy action
+elimination: Nakhost and Mueller, "Action Elimination and Plan Neighborhood Graph Search", ICAPS 2010).
 """
 
 from __future__ import annotations
@@ -25,8 +25,12 @@ from polaris_nl.planning.result import BranchingPlan, Segment
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """The place of an action in a branching plan: the checkpoint that its segment ends at, and its
-    place in the segment, from 0."""
+    """The place of an action in a branching plan.
+
+    Attributes:
+        checkpoint: the checkpoint that its segment ends at.
+        at: its place in the segment, from 0.
+    """
 
     checkpoint: str
     at: int
@@ -55,9 +59,7 @@ class Purpose:
 
     Attributes:
         goal: the goal, of `checkpoint`.
-        chain: from the action to the goal, link by link; the last one is the goal's own. Empty
-            where the goal is missed without the action although no fact leads from one to the
-            other.
+        chain: from the action to the goal, link by link; the last one is the goal's own.
     """
 
     goal: Literal
@@ -100,10 +102,12 @@ class Reasons:
 
     def purposes(self, step: Step) -> tuple[Purpose, ...]:
         """The goals that an action serves, nearest first, each with the chain that leads to it."""
-        return tuple(
-            Purpose(goal, checkpoint, tuple(self._chain(step, goal, checkpoint)))
-            for checkpoint, goal in self._missed(step)
-        )
+        found = []
+        for checkpoint, goal in self._missed(step):
+            chain = tuple(self._chain(step, goal, checkpoint))
+            if chain and chain[-1].step is None:
+                found.append(Purpose(goal, checkpoint, chain))
+        return tuple(found)
 
     def _chain(self, step: Step, goal: Literal, checkpoint: str) -> Iterator[Reason]:
         """At each action the first use that serves the goal."""
@@ -137,11 +141,11 @@ class Reasons:
 
     def _uses(self, fact: Literal, step: Step, branch: Sequence[str]) -> Iterator[Reason]:
         """What needs a fact along one branch, from an action on, until it is undone."""
-        states = self._states[step.checkpoint]
+        states = self.states[step.checkpoint]
         here, at = branch.index(step.checkpoint), step.at + 1
         for number, target in enumerate(branch[here:]):
             segment = self.plan.segments[target]
-            states = self._states[target]
+            states = self.states[target]
             if number and not segment.before.holds(fact):
                 return
             for place in range(at if not number else 0, len(segment.actions)):
@@ -159,7 +163,7 @@ class Reasons:
         return not applicable(action, operator, without, self.world)
 
     def _made(self, step: Step) -> tuple[Literal, ...]:
-        states = self._states[step.checkpoint]
+        states = self.states[step.checkpoint]
         removed, added = states[step.at].difference(states[step.at + 1])
         return (*added, *(fact.negation for fact in removed))
 
@@ -170,7 +174,7 @@ class Reasons:
         return self._known[step]
 
     def _eliminated(self, step: Step) -> Iterator[tuple[str, Literal]]:
-        states = self._states[step.checkpoint]
+        states = self.states[step.checkpoint]
         waiting = [(step.checkpoint, states[step.at], step.at + 1)]
         while waiting:
             target, state, at = waiting.pop()
@@ -201,7 +205,7 @@ class Reasons:
         return {}
 
     @cached_property
-    def _states(self) -> dict[str, list[State]]:
+    def states(self) -> dict[str, list[State]]:
         """By checkpoint, the state before each action of its segment, and the one at its end."""
         return {target: self._along(segment) for target, segment in self.plan.segments.items()}
 
