@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
@@ -129,8 +130,10 @@ def _possible(
 
 def _also(found: Contrast, wording: Wording) -> str:
     """What only one of the two plans has, where that is little."""
-    more = [wording.action(a) for a in dict.fromkeys(found.more)]
-    less = [wording.action(a) for a in dict.fromkeys(found.less)]
+    # The same way there from two places is said the same: it is no difference to a person.
+    theirs = Counter(wording.action(a) for a in found.more)
+    ours = Counter(wording.action(a) for a in found.less)
+    more, less = list((theirs - ours).elements()), list((ours - theirs).elements())
     if not more or len(more) + len(less) > _SPOKEN_EXTRAS:
         return ""
     if not less:

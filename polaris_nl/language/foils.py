@@ -100,6 +100,7 @@ def _without_never(part: Words) -> list[Words]:
     found = []
     if part[0] in _NOBODY or part[:2] == ("no", "one"):
         rest = part[2:] if part[0] == "no" else part[1:]
+        rest = rest[1:] if rest[:1] == ("ever",) else rest
         found += [("someone", *rest), ("she", *rest), ("he", *rest), ("it", *rest)]
     for words in _NEVER:
         for at in range(len(part) - len(words) + 1):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from polaris_nl.automaton.automaton import START, Automaton
+from polaris_nl.automaton.automaton import START, Automaton, Transition
 from polaris_nl.model.domain import Action
 from polaris_nl.model.formula import Literal
 from polaris_nl.model.text import listed, sentence
@@ -77,9 +77,9 @@ def purpose_in_words(reasons: Reasons, step: Step, wording: Wording) -> str:
     steps = [wording.action(a) for a in _steps(reasons, purposes)]
     way = f", so that I can {_shortened(steps)}" if steps else ""
     asked = _asked(reasons, step, purposes, wording)
-    if asked == (steps or [wording.action(action)])[-1]:
-        return sentence(f"{done}{way}, as you asked me to")
-    return sentence(f"{done}{way}, as you asked me to {asked}")
+    if asked == f" to {(steps or [wording.action(action)])[-1]}":
+        asked = " to"
+    return sentence(f"{done}{way}, as you asked me{asked}")
 
 
 def _without_purpose(reasons: Reasons, step: Step, wording: Wording) -> str:
@@ -97,10 +97,13 @@ def _without_purpose(reasons: Reasons, step: Step, wording: Wording) -> str:
 def _steps(reasons: Reasons, purposes: Sequence[Purpose]) -> list[Action]:
     """The actions of all chains in the order of the plan; of several moves in a row, the last."""
     order = {c: n for n, c in enumerate(reasons.plan.segments)}
-    places = {r.step: r.needed_by for p in purposes for r in p.chain if r.step and r.needed_by}
-    steps = [places[s] for s in sorted(places, key=lambda s: (order[s.checkpoint], s.at))]
-    last = len(steps) - 1
-    return [a for n, a in enumerate(steps) if n == last or steps[n + 1].operator != a.operator]
+    places: dict[Step, Action] = {}
+    for purpose in purposes:
+        chain = [(r.step, r.needed_by) for r in purpose.chain if r.step and r.needed_by]
+        for (place, action), (_, then) in zip(chain, [*chain[1:], (None, None)], strict=True):
+            if then is None or then.operator != action.operator:
+                places[place] = action
+    return [places[s] for s in sorted(places, key=lambda s: (order[s.checkpoint], s.at))]
 
 
 def _shortened(steps: list[str]) -> str:
@@ -117,10 +120,17 @@ def _asked(reasons: Reasons, step: Step, purposes: Sequence[Purpose], wording: W
     here = {t.id for t in reasons.automaton.path(step.checkpoint)}
     said = []
     for checkpoint, goals in by_checkpoint.items():
-        onward = [t for t in reasons.automaton.path(checkpoint) if t.id not in here and t.when]
-        once = f", once {wording.events(onward[-1].when)}, " if onward else " "
-        said.append(f"{once}to {wording.goals(goals)}")
-    return "and".join(said).removeprefix(" to ").removeprefix(", ")
+        onward = [t for t in reasons.automaton.path(checkpoint) if t.id not in here]
+        cases = [c for t in onward if (c := _case(reasons.automaton, t, wording))]
+        once = cases[-1] if cases else ""
+        said.append(f"{once} to {wording.goals(goals)}")
+    return " and".join(said)
+
+
+def _case(automaton: Automaton, transition: Transition, wording: Wording) -> str:
+    if transition.when:
+        return f", once {wording.events(transition.when)},"
+    return " otherwise" if automaton.is_else(transition.id) else ""
 
 
 def problem_rows(plan: BranchingPlan, automaton: Automaton, width: int) -> list[Row]:
