@@ -17,7 +17,7 @@ from functools import cached_property
 from polaris_nl.automaton.automaton import START, Automaton
 from polaris_nl.model.domain import Action
 from polaris_nl.model.evaluate import after, applicable
-from polaris_nl.model.formula import Literal
+from polaris_nl.model.formula import Literal, bind, literals_in
 from polaris_nl.model.state import State
 from polaris_nl.model.world import World
 from polaris_nl.planning.result import BranchingPlan, Segment
@@ -159,6 +159,13 @@ class Reasons:
 
     def _needs(self, action: Action, state: State, fact: Literal) -> bool:
         operator = self.world.domain.operators[action.operator]
+        if action not in self._asked_by:
+            asked = literals_in(bind(operator.precondition, operator.binding(action)))
+            self._asked_by[action] = frozenset(
+                x.predicate if any(a.startswith("?") for a in x.args) else x.atom for x in asked
+            )
+        if self._asked_by[action].isdisjoint((fact.atom, fact.predicate)):
+            return False  # Quick: most actions have nothing to do with a fact.
         without = state.change((fact,), ()) if fact.positive else state.change((), (fact.atom,))
         return not applicable(action, operator, without, self.world)
 
@@ -174,21 +181,30 @@ class Reasons:
         return self._known[step]
 
     def _eliminated(self, step: Step) -> Iterator[tuple[str, Literal]]:
-        states = self.states[step.checkpoint]
-        waiting = [(step.checkpoint, states[step.at], step.at + 1)]
+        waiting = [(step.checkpoint, self.states[step.checkpoint][step.at], step.at + 1)]
         while waiting:
             target, state, at = waiting.pop()
             segment = self.plan.segments[target]
-            for action in segment.actions[at:]:
-                operator = self.world.domain.operators[action.operator]
-                if applicable(action, operator, state, self.world):
-                    state = after(action, operator, state, self.world)
+            state = self._rest(segment, state, at)
+            if state == segment.after:
+                continue  # From here on all is as it is with the action.
             yield from ((target, goal) for goal in segment.goals if not state.holds(goal))
             for onward in reversed(self.automaton.children(target)):
                 if onward in self.plan.segments:
                     # What happens between two segments happens without the action, too.
                     gone, come = segment.after.difference(self.plan.segments[onward].before)
                     waiting.append((onward, state.change(gone, come), 0))
+
+    def _rest(self, segment: Segment, state: State, at: int) -> State:
+        """The state after those actions of a segment, from a place on, that can be done."""
+        for place in range(at, len(segment.actions)):
+            if state == self.states[segment.target][place]:
+                return segment.after
+            action = segment.actions[place]
+            operator = self.world.domain.operators[action.operator]
+            if applicable(action, operator, state, self.world):
+                state = after(action, operator, state, self.world)
+        return state
 
     def _branches(self, checkpoint: str) -> Iterator[tuple[str, ...]]:
         """The checkpoints of each branch that leads over one, the start left out."""
@@ -199,6 +215,11 @@ class Reasons:
 
     def _path(self, checkpoint: str) -> tuple[str, ...]:
         return tuple(t.target for t in self.automaton.path(checkpoint) if t.target != START)
+
+    @cached_property
+    def _asked_by(self) -> dict[Action, frozenset[Literal | str]]:
+        """What an action's precondition speaks of: atoms, and predicates where any entity will do."""
+        return {}
 
     @cached_property
     def _known(self) -> dict[Step, tuple[tuple[str, Literal], ...]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import zip_longest
 
 from polaris_nl.automaton.automaton import START, Automaton, Transition
 from polaris_nl.model.domain import Action
@@ -74,8 +75,11 @@ def purpose_in_words(reasons: Reasons, step: Step, wording: Wording) -> str:
     done = f"I {wording.action(action)}"
     if not purposes:
         return sentence(f"{done}{_without_purpose(reasons, step, wording)}")
-    steps = [wording.action(a) for a in _steps(reasons, purposes)]
-    way = f", so that I can {_shortened(steps)}" if steps else ""
+    places = _steps(reasons, purposes)
+    steps = [wording.action(a) for a in places.values()]
+    ways = [place.checkpoint for place in places][-2:]
+    parted = len(ways) == 2 and ways[1] not in reasons.automaton.subtree(ways[0])
+    way = f", so that I can {_shortened(steps, 'or' if parted else 'and')}" if steps else ""
     asked = _asked(reasons, step, purposes, wording)
     if asked == f" to {(steps or [wording.action(action)])[-1]}":
         asked = " to"
@@ -94,21 +98,23 @@ def _without_purpose(reasons: Reasons, step: Step, wording: Wording) -> str:
     return f' on the way to "{name}", but nothing that you asked for needs it'
 
 
-def _steps(reasons: Reasons, purposes: Sequence[Purpose]) -> list[Action]:
+def _steps(reasons: Reasons, purposes: Sequence[Purpose]) -> dict[Step, Action]:
     """The actions of all chains in the order of the plan; of several moves in a row, the last."""
     order = {c: n for n, c in enumerate(reasons.plan.segments)}
     places: dict[Step, Action] = {}
     for purpose in purposes:
         chain = [(r.step, r.needed_by) for r in purpose.chain if r.step and r.needed_by]
-        for (place, action), (_, then) in zip(chain, [*chain[1:], (None, None)], strict=True):
-            if then is None or then.operator != action.operator:
+        following = [action.operator for _, action in chain[1:]]
+        for (place, action), then in zip_longest(chain, following):
+            if action.operator != then:
                 places[place] = action
-    return [places[s] for s in sorted(places, key=lambda s: (order[s.checkpoint], s.at))]
+    return dict(sorted(places.items(), key=lambda p: (order[p[0].checkpoint], p[0].at)))
 
 
-def _shortened(steps: list[str]) -> str:
+def _shortened(steps: list[str], word: str) -> str:
+    """Few actions as a list, of many the first ones and the last."""
     if len(steps) <= SPOKEN_PURPOSES:
-        return listed(steps)
+        return listed(steps, word)
     return f"{', '.join(steps[: SPOKEN_PURPOSES - 1])} and in the end {steps[-1]}"
 
 
