@@ -12,7 +12,8 @@ from polaris_nl.language.interpretation import Query
 from polaris_nl.model.formula import Literal
 from polaris_nl.model.text import listed, sentence
 from polaris_nl.model.wording import Wording
-from polaris_nl.planning.contrast import Contrast, Foil, Way, achieved, contrast
+from polaris_nl.planning.contrast import achieved, contrast
+from polaris_nl.planning.foils import Contrast, Foil, Way
 from polaris_nl.planning.result import BranchingPlan
 from polaris_nl.planning.waiting import Waiting, waits
 from polaris_nl.render.explanation import steps_in_words
@@ -123,7 +124,8 @@ def _possible(
         could += f", but I would still have to {wording.goals(foil.fact)}"
     if found.extra > 0:
         length = f"take {_more(found.extra, 'more')}{_also(found, wording)}"
-        return sentence(f"{could}, {'and' if found.still else 'but'} it would {length}")
+        it = "it" if found.exact else "the way that I found"
+        return sentence(f"{could}, {'and' if found.still else 'but'} {it} would {length}")
     length = f"be {_more(-found.extra, 'shorter')}" if found.extra < 0 else "be as short"
     return sentence(f"{could}, and it would {length}{_to_have_it(found, foil, automaton, wording)}")
 
@@ -149,7 +151,9 @@ def _more(count: int, word: str) -> str:
 
 
 def _to_have_it(found: Contrast, foil: Foil, automaton: Automaton, wording: Wording) -> str:
-    """What to say to have the foil."""
+    """What to say to have the foil, where that has been tried."""
+    if not found.offered:
+        return ""
     wanted = wording.goals(foil.wanted)
     if foil.way == "first":
         return f'; say "{wanted} before anything else" to have it so'

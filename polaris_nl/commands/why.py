@@ -13,7 +13,7 @@ from polaris_nl.commands.plan import checkpoint_of
 from polaris_nl.model.errors import PolarisError, UsageError
 from polaris_nl.model.formula import Goal, parse_formula
 from polaris_nl.model.text import listed, sentence
-from polaris_nl.planning.contrast import earlier_place
+from polaris_nl.planning.forgone import earlier_place
 from polaris_nl.planning.reasons import Reason, Reasons, Step
 from polaris_nl.planning.result import BranchingPlan, Segment
 from polaris_nl.render.explanation import branches_in_words, purpose_in_words, segment_in_words

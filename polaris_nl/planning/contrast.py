@@ -12,70 +12,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Literal as OneOf
 
 from polaris_nl.automaton.automaton import START, Automaton, Checkpoint, Transition
 from polaris_nl.model.domain import Action
-from polaris_nl.model.evaluate import after, ground_goals
-from polaris_nl.model.formula import Goal, Literal
+from polaris_nl.model.evaluate import after
+from polaris_nl.model.formula import Literal
 from polaris_nl.model.state import State
-from polaris_nl.planning.barred import barred
+from polaris_nl.model.world import World
+from polaris_nl.planning.barred import REACHED, barred, unmarked
+from polaris_nl.planning.foils import Contrast, Foil
 from polaris_nl.planning.insisting import along, insisting, only_in
 from polaris_nl.planning.planner import Planner
 from polaris_nl.planning.reasons import Step
 from polaris_nl.planning.result import BranchingPlan
 from polaris_nl.planning.segments import BUDGET_S, SegmentResult, Segments, never
-
-Way = OneOf["first", "before", "instead"]
-Outcome = OneOf[
-    "possible", "already", "holds", "needed", "impossible", "asked", "absent", "undecided"
-]
-
-
-@dataclass(frozen=True, slots=True)
-class Foil:
-    """What the user has in mind.
-
-    Attributes:
-        way: `first`: the wanted facts before all else; `before`: before the plan's facts; `instead`:
-            the wanted facts, and the plan's never on the way to that checkpoint's goals.
-        wanted: the facts that the foil reaches.
-        fact: the facts of the plan that they are held against; none for `first`.
-    """
-
-    way: Way
-    wanted: tuple[Literal, ...]
-    fact: tuple[Literal, ...] = ()
-
-
-@dataclass(frozen=True, slots=True)
-class Contrast:
-    """The plan beside its foil.
-
-    Attributes:
-        outcome: `possible`; `already`: the plan does it so; `holds`: the wanted facts are true then
-            anyway; `needed`: they can't be reached without the plan's facts; `impossible`: they
-            can't be reached there at all; `asked`: the plan's facts are what the user asked for;
-            `absent`: the plan doesn't bring its own facts about; `undecided`: not found out in time.
-        checkpoint: the checkpoint on the way to which the plan would change, or None.
-        prefix: what the robot would do first, in the foil.
-        extra: how many actions more the foil has, on the branch where they differ most; negative
-            where it has fewer.
-        more, less: the actions that only the foil has, and only the plan, on that branch.
-        still: for `instead`: the plan's facts come about all the same.
-        lost: the checkpoints that the foil would leave out.
-        reason: for `impossible`, why, in a sentence.
-    """
-
-    outcome: Outcome
-    checkpoint: str | None = None
-    prefix: tuple[Action, ...] = ()
-    extra: int = 0
-    more: tuple[Action, ...] = ()
-    less: tuple[Action, ...] = ()
-    still: bool = False
-    lost: tuple[str, ...] = ()
-    reason: str = ""
 
 
 def contrast(
@@ -121,34 +71,6 @@ def _reached(
             state = after(action, operator, state, planner.world)
         if all(map(state.holds, facts)):
             return at
-    return None
-
-
-def earlier_place(
-    planner: Planner, automaton: Automaton, plan: BranchingPlan, goals: Sequence[Goal], last: str
-) -> Contrast | None:
-    """The latest checkpoint before `last` after which goals can be met, and what that would forgo.
-
-    For goals that can't be met after `last`: an earlier step may have used up what they need. After
-    Eifler, Cashmore, Hoffmann, Magazzeni and Steinmetz, "A New Approach to Plan-Space Explanation"
-    (AAAI 2020): to have one thing, others are forgone.
-
-    Returns:
-        A contrast with the checkpoint, the actions there in `prefix`, and `lost`; None where there
-        is no such place.
-    """
-    path = [START, *(t.target for t in automaton.path(last))]
-    for checkpoint in reversed(path[:-1]):
-        segment = plan.segments.get(checkpoint)
-        if segment is None and checkpoint != START:
-            continue
-        state = segment.after if segment else planner.world.initial
-        wanted = ground_goals(goals, state, planner.world)
-        found = planner.segment(state, wanted)
-        if found.status == "solved":
-            trial = planner.compile(insisting(automaton, checkpoint, None, found.actions))
-            lost = tuple(c for c in plan.segments if c not in trial.segments)
-            return Contrast("possible", checkpoint, found.actions, len(found.actions), lost=lost)
     return None
 
 
@@ -200,7 +122,10 @@ class _Trial:
             return Contrast("undecided", step.checkpoint)
         if result.status != "solved":
             return self._failed(result, segment.source, step)
-        return self._compared(segment.source, step.checkpoint, result.actions)
+        whole = self._ordered(step)
+        prefix = whole.actions if whole else result.actions
+        exact = whole is not None and whole.optimal
+        return self._compared(segment.source, step.checkpoint, prefix, exact)
 
     def _instead(self, step: Step) -> Contrast:
         segment, wanted = self.plan.segments[step.checkpoint], self.foil.wanted
@@ -213,13 +138,14 @@ class _Trial:
             return Contrast("undecided", step.checkpoint)
         if result.status != "solved":
             return self._failed(result, segment.source, step)
-        there = self._after(segment.before, result.actions)
-        rest = self._without(step, there, segment.goals)
-        if rest is None or rest.status not in ("solved", "unsolvable"):
-            return Contrast("undecided", step.checkpoint)
-        still = rest.status == "unsolvable"
-        prefix = result.actions if still else (*result.actions, *rest.actions)
-        return replace(self._compared(segment.source, step.checkpoint, prefix), still=still)
+        whole = self._ordered(step, ever=False)
+        if whole is not None:
+            return self._compared(segment.source, step.checkpoint, whole.actions)
+        whole = self._ordered(step)
+        prefix = whole.actions if whole else result.actions
+        exact = whole is not None and whole.optimal
+        found = self._compared(segment.source, step.checkpoint, prefix, exact)
+        return replace(found, still=True)
 
     def _earlier(self, checkpoint: str) -> bool:
         """Whether a segment before this one brings the wanted facts about."""
@@ -235,16 +161,41 @@ class _Trial:
             return SegmentResult("solved", (), True)
         return self.planner.segment(state, goals)
 
+    def _last(self, step: Step) -> Literal:
+        """The one of the plan's facts that comes last, with the action at `step`."""
+        segment = self.plan.segments[step.checkpoint]
+        state = segment.before
+        for action in segment.actions[: step.at]:
+            operator = self.planner.world.domain.operators[action.operator]
+            state = after(action, operator, state, self.planner.world)
+        return next(f for f in self.foil.fact if not state.holds(f))
+
     def _without(self, step: Step, state: State, goals: Sequence[Literal]) -> SegmentResult | None:
         """A plan on which the plan's facts don't come about, or None where that can't be planned."""
-        segment = self.plan.segments[step.checkpoint]
-        start = self._after(segment.before, segment.actions[: step.at])
-        last = next(f for f in self.foil.fact if not start.holds(f))
-        world = barred(self.planner.world, last)
+        return self._in(barred(self.planner.world, self._last(step)), state, goals)
+
+    def _ordered(self, step: Step, ever: bool = True) -> SegmentResult | None:
+        """A shortest way to the checkpoint on which the wanted fact comes first, or None.
+
+        Args:
+            step: the place of the plan's facts.
+            ever: whether they may come about afterwards.
+        """
+        segment, wanted = self.plan.segments[step.checkpoint], self.foil.wanted
+        if len(wanted) != 1 or self.automaton.checkpoints[step.checkpoint].action is not None:
+            return None
+        world = barred(self.planner.world, self._last(step), wanted[0], ever)
+        result = self._in(world, segment.before, (*segment.goals, REACHED))
+        if result is None or result.status != "solved":
+            return None
+        return replace(result, actions=unmarked(result.actions))
+
+    def _in(
+        self, world: World | None, state: State, goals: Sequence[Literal]
+    ) -> SegmentResult | None:
+        """A plan in a changed world."""
         if world is None:
             return None
-        if all(map(state.holds, goals)):
-            return SegmentResult("solved", (), True)
         marked = State(state.facts | (world.facts - self.planner.world.facts))
         segments = Segments(world, self.planner.mutexes)
         return segments.solve(marked, goals, BUDGET_S, self.cancelled)
@@ -278,33 +229,47 @@ class _Trial:
 
     # The foil as a program
 
-    def _compared(self, source: str, target: str | None, prefix: tuple[Action, ...]) -> Contrast:
+    def _compared(
+        self, source: str, target: str | None, prefix: tuple[Action, ...], exact: bool = True
+    ) -> Contrast:
         trial = insisting(self.automaton, source, target, prefix)
         plan = self.planner.compile(trial, self.cancelled)
         if self.cancelled() or plan.status == "undecided":
             return Contrast("undecided", target)
         lost = tuple(c for c in self.plan.segments if c not in plan.segments)
-        extra = 0
-        more: tuple[Action, ...] = ()
-        less: tuple[Action, ...] = ()
-        changed = self.automaton.subtree(target or source)
-        for leaf in (c for c in changed if not self.automaton.outgoing(c)):
-            if leaf not in plan.segments or leaf not in self.plan.segments:
-                continue
-            ours = along(self.automaton, self.plan, leaf)
-            theirs = along(trial, plan, leaf)
-            if abs(len(theirs) - len(ours)) >= abs(extra):
-                extra = len(theirs) - len(ours)
-                more, less = only_in(theirs, ours), only_in(ours, theirs)
-        return Contrast("possible", target, prefix, extra, more, less, lost=lost)
+        leaf = self._most_different(trial, plan, target or source)
+        if leaf is None:
+            return Contrast("possible", target, prefix, lost=lost, exact=exact)
+        ours, theirs = along(self.automaton, self.plan, leaf), along(trial, plan, leaf)
+        extra = len(theirs) - len(ours)
+        more, less = only_in(theirs, ours), only_in(ours, theirs)
+        offered = not lost and extra <= 0 and self._offered(source, target, leaf, len(theirs))
+        return Contrast(
+            "possible", target, prefix, extra, more, less, lost=lost, exact=exact, offered=offered
+        )
+
+    def _most_different(self, trial: Automaton, plan: BranchingPlan, below: str) -> str | None:
+        """The end of the branch whose length changes most; of several, the one that gets longest."""
+        planned = (c for c in self.automaton.subtree(below) if not self.automaton.outgoing(c))
+        leaves = [c for c in planned if c in plan.segments and c in self.plan.segments]
+
+        def change(leaf: str) -> tuple[int, int]:
+            ours, theirs = along(self.automaton, self.plan, leaf), along(trial, plan, leaf)
+            return abs(len(theirs) - len(ours)), len(theirs) - len(ours)
+
+        return max(leaves, key=change, default=None)
+
+    def _offered(self, source: str, target: str | None, leaf: str, length: int) -> bool:
+        """Whether a step of its own with the wanted facts gives a plan like the foil."""
+        trial = insisting(self.automaton, source, target, [self.foil.wanted])
+        plan = self.planner.compile(trial, self.cancelled)
+        made = next(c for c in trial.checkpoints if c not in self.automaton.checkpoints)
+        if plan.status != "ok" or len(along(trial, plan, leaf)) != length:
+            return False
+        step, fact = plan.segments[made], self.foil.fact
+        return not fact or self._reach(step.before, step.actions, fact) is None
 
     def _reach(
         self, state: State, actions: Sequence[Action], facts: Sequence[Literal]
     ) -> int | None:
         return _reached(self.planner, state, actions, facts)
-
-    def _after(self, state: State, actions: Sequence[Action]) -> State:
-        for action in actions:
-            operator = self.planner.world.domain.operators[action.operator]
-            state = after(action, operator, state, self.planner.world)
-        return state

@@ -15,7 +15,9 @@ from polaris_nl.model.formula import Literal, Quantified
 from polaris_nl.model.state import State
 from polaris_nl.model.world import World
 from polaris_nl.planning.barred import barred
-from polaris_nl.planning.contrast import Contrast, Foil, Way, achieved, contrast, earlier_place
+from polaris_nl.planning.contrast import achieved, contrast
+from polaris_nl.planning.foils import Contrast, Foil, Way
+from polaris_nl.planning.forgone import earlier_place
 from polaris_nl.planning.planner import Planner
 from polaris_nl.planning.reasons import Step
 from polaris_nl.planning.waiting import waits
@@ -89,8 +91,40 @@ def test_the_foil_is_a_plan_in_which_it_is_so(dinner_party: Planner) -> None:
     found = tried(dinner_party, TIDY, "before", str(plate), str(cup))
     assert (found.outcome, found.extra, found.lost) == ("possible", 0, ())
     world = dinner_party.world
-    assert reach(world, world.initial, found.prefix, plate) == len(found.prefix)
-    assert reach(world, world.initial, found.prefix, cup) is None
+    first, second = (reach(world, world.initial, found.prefix, x) for x in (plate, cup))
+    assert first is not None
+    assert second is not None
+    assert first < second
+
+
+def test_what_people_did_before_is_not_done_again(dinner_party: Planner) -> None:
+    rack = "(at cup drying-rack) (at plate drying-rack)"
+    automaton = program(
+        "start -> there: (robot-at kitchen)",
+        f"there -> stowed [{rack}]: (in cup cupboard) (in plate cupboard)",
+    )
+    actions = [str(a) for a in dinner_party.compile(automaton).segments["c2"].actions]
+    order = sorted(("cup", "plate"), key=lambda thing: actions.index(f"(pick {thing} drying-rack)"))
+    first, second = (f"(holding {thing})" for thing in order)
+    found = tried(dinner_party, automaton, "before", second, first)
+    # First the cupboard, then the one thing, then the other: it takes no more.
+    assert (found.outcome, found.checkpoint, found.extra) == ("possible", "c2", 0)
+    assert found.exact
+
+
+@pytest.mark.parametrize(
+    ("wanted", "offered"),
+    [
+        ("(holding plate)", True),
+        # On the way back from the countertop it costs nothing; as a step of its own it is a detour.
+        ("(open cupboard)", False),
+    ],
+)
+def test_only_what_has_been_tried_is_offered(
+    dinner_party: Planner, wanted: str, offered: bool
+) -> None:
+    found = tried(dinner_party, TIDY, "before", wanted, "(holding cup)")
+    assert (found.outcome, found.extra, found.offered) == ("possible", 0, offered)
 
 
 def test_what_cannot_be_avoided_is_said(care_home: Planner) -> None:
@@ -160,35 +194,48 @@ def test_needed_and_possible_are_what_a_blind_search_finds(
     assert (found.outcome == "absent") == (step is None)
     if step is None or found.outcome in ("holds", "already"):
         return
-    start = plan.segments[step.checkpoint].before
-    without = blind(balls.world, start, never=f, wanted=w)
-    assert (found.outcome == "possible") == (without is not None)
-    if without is not None:
-        assert len(found.prefix) == without
-        assert reach(balls.world, start, found.prefix, w) == without
+    segment = plan.segments[step.checkpoint]
+    start = segment.before
+    ways = blind(balls.world, start, (w,), never=f)
+    assert (found.outcome == "possible") == (ways is not None)
+    if ways is not None:
+        first, own = (reach(balls.world, start, found.prefix, x) for x in (w, f))
+        assert first is not None
+        assert own is None or first < own
+        assert found.exact
+        assert len(found.prefix) == blind(balls.world, start, segment.goals, never=f, before=w)
     elif found.outcome == "needed":
-        assert blind(balls.world, start, never=None, wanted=w) is not None
+        assert blind(balls.world, start, (w,)) is not None
 
 
-def blind(world: World, start: State, never: Literal | None, wanted: Literal) -> int | None:
-    """The least number of actions to a fact, none of them bringing another one about."""
-    layer, seen, depth = [start], {start}, 0
+def blind(
+    world: World,
+    start: State,
+    goals: Sequence[Literal],
+    never: Literal | None = None,
+    before: Literal | None = None,
+) -> int | None:
+    """The least number of actions to goals on which a fact doesn't come about, or not before another."""
+    layer = [(start, before is None)]
+    seen, depth = set(layer), 0
     moves = list(all_actions(world))
     while layer:
-        if any(state.holds(wanted) for state in layer):
+        if any(free and all(map(state.holds, goals)) for state, free in layer):
             return depth
         onward = []
-        for state in layer:
+        for state, free in layer:
             for action in moves:
                 operator = world.domain.operators[action.operator]
                 if not applicable(action, operator, state, world):
                     continue
                 new = after(action, operator, state, world)
-                if never is not None and new.holds(never) and not state.holds(never):
+                comes = never is not None and new.holds(never) and not state.holds(never)
+                if comes and not (free and before is not None):
                     continue
-                if new not in seen:
-                    seen.add(new)
-                    onward.append(new)
+                node = (new, free or (before is not None and new.holds(before)))
+                if node not in seen:
+                    seen.add(node)
+                    onward.append(node)
         layer, depth = onward, depth + 1
     return None
 

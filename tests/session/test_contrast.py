@@ -54,6 +54,7 @@ QUESTIONS = {
         "Why do you take the cup before the plate?",
         "Why don't you take the plate before you open the cupboard?",
         "Why do you open the cupboard before putting the cup in it?",
+        "Why do you take the cup before you open the cupboard?",
         "Why don't you put the plate on the countertop first?",
         "Why don't you wash the cup first?",
         "Why not put the plate on the sideboard instead of on the countertop?",
