@@ -20,6 +20,7 @@ from polaris_nl.planning.foils import Contrast, Foil, Way
 from polaris_nl.planning.forgone import earlier_place
 from polaris_nl.planning.planner import Planner
 from polaris_nl.planning.reasons import Step
+from polaris_nl.planning.up_model import is_valid
 from polaris_nl.planning.waiting import waits
 
 from .conftest import BALLS, LUNCH, MakeWorld, facts, program
@@ -95,6 +96,8 @@ def test_the_foil_is_a_plan_in_which_it_is_so(dinner_party: Planner) -> None:
     assert first is not None
     assert second is not None
     assert first < second
+    goals = dinner_party.compile(TIDY).segments["c1"].goals
+    assert is_valid(world, world.initial, goals, found.prefix)  # by another planner's own check
 
 
 def test_what_people_did_before_is_not_done_again(dinner_party: Planner) -> None:
