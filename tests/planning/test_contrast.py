@@ -183,6 +183,15 @@ def balls(make_world: MakeWorld) -> Planner:
     )
 
 
+def test_a_step_that_would_go_the_same_way_is_not_offered(balls: Planner) -> None:
+    automaton = program("start -> c: (held b)")
+    (grab,) = balls.compile(automaton).segments["c1"].actions
+    hand = grab.args[1]
+    found = tried(balls, automaton, "before", "(held b)", f"(in b {hand})")
+    assert (found.outcome, found.extra, found.offered) == ("possible", 0, False)
+    assert [a.args for a in found.prefix] == [("b", "right" if hand == "left" else "left")]
+
+
 @given(
     wanted=st.sampled_from(THINGS), fact=st.sampled_from(THINGS), goal=st.sampled_from(THINGS[:5])
 )

@@ -123,6 +123,14 @@ def test_a_way_there_does_not_serve_what_is_done_after_it_is_left(care_home: Pla
     assert {p.checkpoint for p in reasons.purposes(Step("c2", last))} == {"c2"}
 
 
+def test_what_a_person_does_between_is_done_without_the_action_too(dinner_party: Planner) -> None:
+    reasons = reasons_of(dinner_party, TIDY)
+    names = [str(a) for a in reasons.plan.segments["c1"].actions]
+    pick = Step("c1", names.index("(pick cup dining-table)"))
+    # The host puts the cup on the rack wherever it is, so the cupboard doesn't need this.
+    assert [str(p.goal) for p in reasons.purposes(pick)] == ["(at cup countertop)"]
+
+
 def test_an_empty_hand_is_what_putting_down_is_for(dinner_party: Planner) -> None:
     automaton = program("start -> put: (at cup countertop)", "opened: (open cupboard)")
     reasons = reasons_of(dinner_party, automaton)
