@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 
 from polaris_nl.answers import STILL_PLANNING, answer_query, change_in_words, run_in_words
 from polaris_nl.answers.about_goals import possible_in_words, problem_of, with_goals
+from polaris_nl.answers.contrast import CONTRASTS, answer_contrast
 from polaris_nl.automaton.automaton import Automaton
 from polaris_nl.automaton.edit_json import edit_json
 from polaris_nl.automaton.edits import Edit, ReplaceProgram
@@ -189,7 +190,10 @@ class Session:
 
     def warm_up(self) -> None:
         """Loads language and planner, so that the first sentence is answered as quickly as the second."""
-        for said in ("help", "hlep"):  # The dictionary is loaded for the first word that isn't known.
+        for said in (
+            "help",
+            "hlep",
+        ):  # The dictionary is loaded for the first word that isn't known.
             self.understanding.interpret(said, self._publisher.snapshot.automaton)
         self._replanner.request(
             self._publisher.snapshot.revision, self._publisher.snapshot.automaton
@@ -274,6 +278,14 @@ class Session:
                 return interpretation.say
             if interpretation.query.kind in ("able", "why-not"):
                 return self._possible(interpretation.query, after)
+            if interpretation.query.kind in CONTRASTS:
+                return answer_contrast(
+                    interpretation.query,
+                    after.automaton,
+                    after.plan,
+                    lambda: self.planner,
+                    self.wording,
+                )
             back = self.understanding.read_back(after.automaton)
             return answer_query(
                 interpretation.query, after.automaton, after.plan, self.world, self.wording, back

@@ -13,12 +13,14 @@ from polaris_nl.model.formula import Goal, Literal, literals_in
 from polaris_nl.model.text import listed, sentence
 from polaris_nl.model.wording import Wording
 from polaris_nl.model.world import World
-from polaris_nl.planning.reasons import Reason, reasons_for
+from polaris_nl.planning.reasons import Reasons, Step
 from polaris_nl.planning.result import BranchingPlan, Segment
-from polaris_nl.render.explanation import branches_in_words, segment_in_words, steps_in_words
-
-_MOST_LINKS = 12
-"""Actions over which a reason is followed to the goal that it serves."""
+from polaris_nl.render.explanation import (
+    branches_in_words,
+    purpose_in_words,
+    segment_in_words,
+    steps_in_words,
+)
 
 
 @dataclass(frozen=True)
@@ -288,34 +290,9 @@ class AboutPlan:
         return self._why_action(segment, at)
 
     def _why_action(self, segment: Segment, at: int) -> str:
-        """What an action is for: the action that needs it next, and the goal at the end."""
-        chain: list[Reason] = []
-        where, place = segment, at
-        for _ in range(_MOST_LINKS):
-            links = reasons_for(self.plan, self.automaton, self.world, where, place)
-            if not links:
-                break
-            link = next((x for x in links if x.needed_by is None), links[0])
-            chain.append(link)
-            if link.needed_by is None:
-                break
-            where = self.plan.segments[link.checkpoint]
-            place = where.actions.index(link.needed_by)
-        goal = self._goals(chain[-1].checkpoint if chain else segment.target)
-        if not chain:
-            return sentence(
-                f"it is on the way: you asked me to {goal}" if goal else "it is on the way"
-            )
-        if chain[0].needed_by is None:
-            return sentence(f"because you asked me to {self._goal_of(chain[0], goal)}")
-        need = self.wording.action(chain[0].needed_by)
-        if goal and goal != need:
-            return f"{sentence(f'so that I can {need}')} {sentence(f'you asked me to {goal}')}"
-        return sentence(f"so that I can {need}, as you asked me to")
-
-    def _goal_of(self, reason: Reason, goal: str) -> str:
-        said = self.wording.goal(reason.fact)
-        return said if said in goal or not goal else goal
+        """What an action is for: the actions that need it, and the goals at the end."""
+        reasons = Reasons(self.plan, self.automaton, self.world)
+        return purpose_in_words(reasons, Step(segment.target, at), self.wording)
 
     def _why_step(self, checkpoint: str | None) -> str:
         segment = self.plan.segments.get(checkpoint or "")

@@ -110,9 +110,24 @@ def _authoring(adder: _Adder) -> None:
 
 def _planning(adder: _Adder) -> None:
     plan = adder.add(
-        "plan", "plan a program and explain the plan", "polaris-nl plan lunch.polaris.json"
+        "plan",
+        "plan a program and explain the plan",
+        "polaris-nl plan lunch.polaris.json\n"
+        "  polaris-nl plan lunch.polaris.json --full --branch home\n"
+        "  polaris-nl plan lunch.polaris.json --state 7",
     )
     _program(plan)
+    form = plan.add_mutually_exclusive_group()
+    form.add_argument("--short", action="store_true", help="one line a branch")
+    form.add_argument(
+        "--full", action="store_true", help="every action with what it is for and what it changes"
+    )
+    form.add_argument(
+        "--state", metavar="N", type=int, help="what is so after action N; 0 is the start"
+    )
+    plan.add_argument(
+        "--branch", metavar="X", help="only the branch over a checkpoint, by its name or id"
+    )
     why = adder.add(
         "why",
         "say why an action is there, or why a goal can't be reached",

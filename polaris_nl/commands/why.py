@@ -9,13 +9,15 @@ from typing import Any
 from polaris_nl.automaton.automaton import START, Automaton, Checkpoint, Transition
 from polaris_nl.automaton.edits import AddCheckpoint, apply
 from polaris_nl.commands.common import opened, print_json, print_text
-from polaris_nl.model.errors import PolarisError, UsageError, did_you_mean
+from polaris_nl.commands.plan import checkpoint_of
+from polaris_nl.model.errors import PolarisError, UsageError
 from polaris_nl.model.formula import Goal, parse_formula
 from polaris_nl.model.text import listed, sentence
-from polaris_nl.planning.reasons import Reason, reasons_for
+from polaris_nl.planning.forgone import earlier_place
+from polaris_nl.planning.reasons import Reason, Reasons, Step
 from polaris_nl.planning.result import BranchingPlan, Segment
-from polaris_nl.render.explanation import branches_in_words, segment_in_words
-from polaris_nl.render.program import first_numbers
+from polaris_nl.render.explanation import branches_in_words, purpose_in_words, segment_in_words
+from polaris_nl.render.program import numbered
 from polaris_nl.session import Session
 
 
@@ -59,10 +61,7 @@ class Asker:
 
     def checkpoint(self, name: str) -> dict[str, Any]:
         """What a checkpoint takes."""
-        names = {c.name: c.id for c in self.automaton.checkpoints.values()}
-        checkpoint = names.get(name, name)
-        if checkpoint not in self.automaton.checkpoints:
-            raise UsageError(f"There is no checkpoint {name}.{did_you_mean(name, names)}")
+        checkpoint = checkpoint_of(name, self.automaton)
         if checkpoint == START:
             return {"text": "The start is where every program begins.", "possible": True}
         segment = self.plan.segments.get(checkpoint)
@@ -75,26 +74,23 @@ class Asker:
         return {"text": text, "possible": True, "checkpoint": checkpoint, "actions": actions}
 
     def action(self, number: int) -> dict[str, Any]:
-        """What an action is for: the later actions and goals that need what it brings about."""
+        """What an action is for: the goals that it serves, and the chain from it to each."""
         segment, at = self._numbered(number)
-        action = segment.actions[at]
-        wording = self.session.wording
-        links = reasons_for(self.plan, self.automaton, self.session.world, segment, at)
-        name = self.automaton.checkpoints[segment.target].name
-        reasons = [f"it makes sure that {wording.fact(r.fact)}, {self._need(r)}" for r in links]
-        why = listed(reasons) or f"it is on the way to {name}"
+        reasons = Reasons(self.plan, self.automaton, self.session.world)
+        step = Step(segment.target, at)
         return {
-            "text": sentence(f"I {wording.action(action)} because {why}"),
+            "text": purpose_in_words(reasons, step, self.session.wording),
             "possible": True,
-            "action": str(action),
+            "action": str(segment.actions[at]),
             "checkpoint": segment.target,
-            "reasons": [
+            "reasons": [_link(r) for r in reasons.links(step)],
+            "purposes": [
                 {
-                    "fact": str(r.fact),
-                    "action": r.needed_by and str(r.needed_by),
-                    "checkpoint": r.checkpoint,
+                    "goal": str(p.goal),
+                    "checkpoint": p.checkpoint,
+                    "chain": [_link(r) for r in p.chain],
                 }
-                for r in links
+                for p in reasons.purposes(step)
             ],
         }
 
@@ -108,19 +104,31 @@ class Asker:
         plan = self.session.planner.compile(tried)
         segment = plan.segments.get(asked.id)
         if segment is None:
-            return self._problem(asked.id, plan)
-        where = "at the start" if at == START else f"after {self.automaton.checkpoints[at].name}"
+            return self._forgone(goals, at, self._problem(asked.id, plan))
         steps = segment_in_words(segment, self.session.wording)
+        count = len(segment.actions)
+        more = f", in {count} more actions" if count > 1 else ""
         return {
-            "text": f"It is possible {where}: {steps[0].lower() if steps[0] != 'I' else 'I'}{steps[1:]}",
+            "text": f"It is possible {self._place(at)}{more}: {_lowered(steps)}",
             "possible": True,
             "actions": [str(a) for a in segment.actions],
         }
 
-    def _need(self, reason: Reason) -> str:
-        if reason.needed_by is None:
-            return f"which is a goal of {self.automaton.checkpoints[reason.checkpoint].name}"
-        return f"which I need to {self.session.wording.action(reason.needed_by)}"
+    def _forgone(self, goals: tuple[Goal, ...], at: str, problem: dict[str, Any]) -> dict[str, Any]:
+        """The problem with the earlier place where the goals could still be met, if there is one."""
+        found = earlier_place(self.session.planner, self.automaton, self.plan, goals, at)
+        if found is None or found.checkpoint is None:
+            return problem
+        names = self.automaton.checkpoints
+        lost = listed([f'"{names[c].name}"' for c in found.lost])
+        but = f", but then I couldn't do {lost} any more" if lost else ""
+        earlier = sentence(f"it could be done {self._place(found.checkpoint)}{but}")
+        return {**problem, "text": f"{problem['text']} {earlier}", "earlier": found.checkpoint}
+
+    def _place(self, checkpoint: str) -> str:
+        if checkpoint == START:
+            return "at the start"
+        return f"after {self.automaton.checkpoints[checkpoint].name}"
 
     def _goals(self, text: str) -> tuple[Goal, ...]:
         if text.lstrip().startswith("("):
@@ -159,12 +167,23 @@ class Asker:
         return leaves[-1] if leaves else planned[-1]
 
     def _numbered(self, number: int) -> tuple[Segment, int]:
-        first = first_numbers(self.plan)
-        for checkpoint, start in first.items():
-            segment = self.plan.segments[checkpoint]
-            if start <= number < start + len(segment.actions):
-                return segment, number - start
+        found = numbered(self.plan, number)
+        if found is not None:
+            return self.plan.segments[found[0]], found[1]
         count = self.plan.action_count
         raise UsageError(
             f"There is no action {number}; the plan has {count}. See them with: polaris-nl plan"
         )
+
+
+def _lowered(text: str) -> str:
+    """A sentence as the rest of another one: "I" stays."""
+    return text if text.split()[0] == "I" else f"{text[0].lower()}{text[1:]}"
+
+
+def _link(reason: Reason) -> dict[str, Any]:
+    return {
+        "fact": str(reason.fact),
+        "action": reason.needed_by and str(reason.needed_by),
+        "checkpoint": reason.checkpoint,
+    }

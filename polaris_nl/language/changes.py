@@ -131,6 +131,9 @@ class Changes:
             EditError: it can't be done.
         """
         intent, slots = match.intent, match.slots
+        if intent == "else" and self._language.asks_for(match.tokens[1:]):
+            # "Otherwise put the cup away" asks for it, whatever step does that already.
+            raise Misfit("")
         named = {
             name: meant(found, match.tokens, program, dialogue.scope)
             for name, found in match.references.items()
@@ -141,10 +144,6 @@ class Changes:
         if intent in ("at-start", "before-that"):
             return self._put(match, START if intent == "at-start" else latest, program, dialogue)
         this = named.get("k", latest)
-        if intent == "else" and self._language.asks_for(match.tokens[1:]):
-            raise Misfit(
-                ""
-            )  # "Otherwise put the cup away" asks for it, whatever step does that already.
         if this == START and intent in _NOT_START:
             raise EditError(_NOT_START[intent])
         name = program.checkpoints[this].name

@@ -19,6 +19,7 @@ QueryKind = OneOf[
     "where-robot", "people", "contents", "inside", "any-inside", "list", "which", "any",
     "meaning", "owner", "first", "last", "next", "after-step", "before-step",
     "length", "use", "when", "will", "able", "why-not",
+    "why-first", "why-before", "why-instead", "what-if-never",
 ]  # fmt: skip
 """What a question asks for, mostly the name of its intent; `which` asks for those things of which a
 fact holds, `any` whether there is one."""
@@ -63,7 +64,9 @@ class Query:
         entities: the entities that it is about, where they are several.
         literals: the facts that it is about, where they are several: one for each thing that "which
             dishes are dirty" may mean.
-        goals: the goals that it is about ("why do you go to the kitchen").
+        goals: the goals that it is about ("why do you go to the kitchen"); where two ways are held
+            against each other, those of the way that the plan doesn't go.
+        others: the goals that they are held against ("why do you fill the tray before ...").
         counted: how many is asked, too.
         noun: what is asked for ("dishes"), or "".
     """
@@ -76,6 +79,7 @@ class Query:
     entities: tuple[str, ...] = ()
     literals: tuple[Literal, ...] = ()
     goals: tuple[Literal, ...] = ()
+    others: tuple[Literal, ...] = ()
     counted: bool = False
     noun: str = ""
 

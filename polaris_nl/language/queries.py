@@ -12,6 +12,7 @@ from polaris_nl.language.asking import AUXILIARIES, DOING, SET_WORDS, Asking
 from polaris_nl.language.conditions import condition_in, span_of
 from polaris_nl.language.dialogue import Dialogue
 from polaris_nl.language.facts_asked import FactsAsked
+from polaris_nl.language.foils import FOIL_KINDS, FOILS, foil, never
 from polaris_nl.language.interpretation import Interpretation, Query, QueryKind
 from polaris_nl.language.mention import Mention
 from polaris_nl.language.patterns import Match, Patterns
@@ -68,6 +69,26 @@ def answer_to(
         query = Query("why", checkpoint=_latest(dialogue, program))
         return _answer(utterance, query, language, program, dialogue)
     return None
+
+
+def contrast_asked(
+    language: Understanding,
+    utterance: str,
+    asking: Asking,
+    tokens: Sequence[str],
+    program: Automaton,
+    dialogue: Dialogue,
+) -> tuple[Interpretation, Dialogue] | None:
+    """The answer to "why don't you ... first" and the like, which must not be taken for a request."""
+    if "why" not in tokens:
+        return None
+    try:
+        answer = answer_to(language, utterance, asking, tokens, program, dialogue)
+    except Unclear:
+        return None
+    query = answer[0].query if answer is not None else None
+    contrasts = query is not None and query.kind in FOIL_KINDS
+    return answer if contrasts else None
 
 
 def _answer(
@@ -143,6 +164,10 @@ class _Reader:
             return Query("next", checkpoint=self._dialogue.asked)
         if intent == "plan":
             return self._case(slots, tokens)
+        if intent in FOILS:
+            return foil(match, tokens, self._goals, self._language.world)
+        if intent == "what-if-never":
+            return never(match, tokens, self._condition)
         if intent == "is-it":
             span = span_of(slots["f"])
             statement = tokens[span[0] : span[1]]
@@ -155,6 +180,9 @@ class _Reader:
         mention = slots["x"]
         assert isinstance(mention, Mention)
         return self._about_entity(intent, mention, tokens)
+
+    def _condition(self, part: tuple[str, ...]) -> tuple[Literal, ...]:
+        return condition_in(self._language, part, (0, len(part)), self._scope)
 
     def _case(self, slots: dict[str, object] | object, tokens: tuple[str, ...]) -> Query | None:
         assert isinstance(slots, dict)

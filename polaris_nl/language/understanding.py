@@ -25,7 +25,7 @@ from polaris_nl.language.mentions import MentionFinder
 from polaris_nl.language.naming import Names
 from polaris_nl.language.patterns import Patterns, strip
 from polaris_nl.language.phrases import recogniser_phrases
-from polaris_nl.language.queries import answer_to
+from polaris_nl.language.queries import answer_to, contrast_asked
 from polaris_nl.language.questions import Questions
 from polaris_nl.language.references import References, UnclearStep
 from polaris_nl.language.refusals import Refusals
@@ -184,6 +184,9 @@ class Understanding:
         told = self._commands.meant(core.words) if core.tokens != tuple(bare) else None
         if told is not None and told.commands[0] not in ("yes", "no"):
             return self._told(utterance, told), dialogue
+        contrasted = contrast_asked(self, utterance, self._asking, tokens, program, dialogue)
+        if contrasted is not None:
+            return contrasted
         changed = self._corrections.corrected(utterance, core, program, dialogue)
         for part in dict.fromkeys((tuple(strip(tokens, ())), tuple(bare), core.tokens)):
             changed = changed or self.edited(utterance, part, program, dialogue)

@@ -39,6 +39,7 @@ def program_rows(
     glyphs: Glyphs,
     width: int,
     actions: bool = False,
+    numbers: Mapping[str, int] | None = None,
 ) -> list[Row]:
     """The outline of a program.
 
@@ -49,8 +50,9 @@ def program_rows(
         glyphs: the signs to draw with.
         width: characters in a row.
         actions: also show the actions of the plan, numbered as `why --action` counts them.
+        numbers: the number of each segment's first action, where the plan is part of another one.
     """
-    drawer = _Drawer(automaton, plan, wording, glyphs, width, actions)
+    drawer = _Drawer(automaton, plan, wording, glyphs, width, actions, numbers)
     return list(drawer.rows())
 
 
@@ -63,6 +65,7 @@ class _Drawer:
         glyphs: Glyphs,
         width: int,
         actions: bool,
+        numbers: Mapping[str, int] | None,
     ) -> None:
         self._automaton = automaton
         self._plan = plan
@@ -70,7 +73,7 @@ class _Drawer:
         self._glyphs = glyphs
         self._width = width
         self._actions = actions
-        self._first = first_numbers(plan) if plan else {}
+        self._first = numbers or (first_numbers(plan) if plan else {})
 
     def rows(self) -> Iterator[Row]:
         yield Row(f"{self._glyphs.start} start", "strong", START)
@@ -169,6 +172,14 @@ def first_numbers(plan: BranchingPlan) -> Mapping[str, int]:
         numbers[checkpoint] = count
         count += len(plan.segments[checkpoint].actions)
     return numbers
+
+
+def numbered(plan: BranchingPlan, number: int) -> tuple[str, int] | None:
+    """The action of a number: the checkpoint that its segment ends at, and its place there, from 0."""
+    for checkpoint, first in first_numbers(plan).items():
+        if first <= number < first + len(plan.segments[checkpoint].actions):
+            return checkpoint, number - first
+    return None
 
 
 def _outline_order(plan: BranchingPlan) -> Iterator[str]:

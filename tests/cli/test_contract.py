@@ -114,9 +114,11 @@ def test_a_plan_with_a_problem_ends_with_1(command: Command, tmp_path: Path) -> 
 
 
 def test_why(command: Command, lunch: Path) -> None:
-    assert "which is a goal of alerted" in command("why", lunch, "--action", 3).out.replace(
-        "\n", " "
-    )
+    told = command("why", lunch, "--action", 2).out.replace("\n", " ")
+    assert "so that I can tell the resident that lunch is ready, as you asked me to." in told
+    value = command("why", "--json", lunch, "--action", 2).json
+    assert set(value) >= {"text", "possible", "action", "checkpoint", "reasons", "purposes"}
+    assert [p["goal"] for p in value["purposes"]] == ["(alerted-to resident lunchtime)"]
     assert "the aim is that" in command(
         "why", lunch, "--checkpoint", "fetched"
     ).out.lower().replace("\n", " ")

@@ -71,7 +71,7 @@ QUESTIONS: Mapping[str, str] = {
 GOALS = (
     "go to the kitchen", "can you open the fridge", "could you please open the wardrobe", "will you go home",
     "start by going to the kitchen", "let the nurse know that bingo is starting", "go home now",
-    "take the cup back to the worktop", "you can go to the kitchen now", "have the fridge open", "let's go home",
+    "take the cup back to the worktop", "you can go to the hall now", "have the fridge open", "let's go home",
     "run to the kitchen", "do you think you could open the fridge", "if the fridge is open, close it",
 )  # fmt: skip
 

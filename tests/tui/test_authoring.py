@@ -130,7 +130,7 @@ def test_why_is_answered_in_the_program(play: Play) -> None:
     async def script(stage: Stage) -> None:
         await stage.say("open the fridge")
         await stage.press("tab", "home", "down", "enter")
-        await stage.see("> why action 1?", "I go to the hall because")
+        await stage.see("> why action 1?", "I go to the hall, so that I can")
         await stage.press("end", "enter")
         await stage.see("> what about opened?", "The aim is that")
         await stage.press("u")
