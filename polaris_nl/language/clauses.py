@@ -298,13 +298,7 @@ def _mention_cost(mention: Mention, types: Sequence[str], finder: ClauseFinder) 
     cost = _place_cost(mention, finder)
     cost += _BESIDE if mention.beside else 0.0
     if mention.parts:
-        everywhere = all(p.place for p in mention.parts)
-        placed = sum(
-            _IDLE_PLACE
-            for p in mention.parts
-            if p.place and not (everywhere and finder.stands_there(p))
-        )
-        return cost + 0.02 * len(mention.parts) + placed
+        return cost + 0.02 * len(mention.parts) + _list_cost(mention.parts, finder)
     cost += 0.05 * len(mention.states)
     best = min((c.rank for c in mention.candidates), default=0)
     vague = 0.3 if mention.candidates and best == 3 else 0.0
@@ -313,6 +307,15 @@ def _mention_cost(mention: Mention, types: Sequence[str], finder: ClauseFinder) 
         kinds = {finder._world.entities[c.entity].type for c in mention.candidates}
         place = 0.4 if "surface" not in kinds else 0.0
     return cost + vague + place
+
+
+def _list_cost(parts: Sequence[Mention], finder: ClauseFinder) -> float:
+    """What the places in a list cost: one for all of it describes as well as that of a single thing."""
+    if all(p.place is not None and p.place is parts[0].place for p in parts):
+        return max(_place_cost(p, finder) for p in parts)
+    everywhere = all(p.place for p in parts)
+    idle = [p for p in parts if p.place and not (everywhere and finder.stands_there(p))]
+    return _IDLE_PLACE * len(idle)
 
 
 def _place_cost(mention: Mention, finder: ClauseFinder) -> float:

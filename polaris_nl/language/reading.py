@@ -350,6 +350,8 @@ class _Reader:
 
     def _goal(self, item: Item) -> None:
         goals = self._literals(item, condition=False)
+        if item.clause is not None and item.clause.kind == "ellipsis":
+            self._check_places(goals)
         self._by_way_of(item, goals)
         forbidden: tuple[Goal, ...] = ()
         if self._negate:
@@ -383,6 +385,19 @@ class _Reader:
             last = self.steps[-1]
             self.steps[-1] = replace(last, goals=tuple(dict.fromkeys((*last.goals, *goals))))
         self._new_step = False
+
+    def _check_places(self, goals: Sequence[Goal]) -> None:
+        """Looks for a second place in one breath: "bring the cup on the table to the sink".
+
+        Raises:
+            Misfit: there is one.
+        """
+        before = [] if self._new_step else _flat(self.steps[-1].goals)
+        there = {_placed(x): x for x in before if x.positive and _places(x)}
+        if any(_places(x) and there.get(_placed(x), x) != x for x in _flat(goals)):
+            raise Misfit(
+                "One thing can't be in two places at once; say for each where it should go."
+            )
 
     def _is_hint(self, item: Item, goals: Sequence[Goal]) -> bool:
         """Whether a wish only says where to look: "find the pen, it should be on the nightstand"."""
@@ -444,15 +459,18 @@ def _superseded(step: Step, goals: Sequence[Goal]) -> bool:
             for d in denied
             for n in new
         )
-    moved = {n.args[0] if n.predicate != "has" else n.args[1] for n in new if _places(n)}
+    moved = {_placed(n) for n in new if n.positive and _places(n)}
     taken = [o for o in old if o.predicate == "holding" or _places(o)]
-    return len(taken) == len(old) and all(
-        (o.args[-1] if o.predicate == "has" else o.args[0]) in moved for o in taken
-    )
+    return len(taken) == len(old) and all(_placed(o) in moved for o in taken)
 
 
 def _places(literal: Literal) -> bool:
     return literal.predicate in ("at", "in", "has") and len(literal.args) == 2
+
+
+def _placed(literal: Literal) -> str:
+    """The thing whose place a literal says."""
+    return literal.args[-1 if literal.predicate == "has" else 0]
 
 
 def _without(item: Item) -> bool:

@@ -16,6 +16,7 @@ from polaris_nl.model.formula import (
     Quantified,
     Variable,
 )
+from polaris_nl.model.text import listed
 from polaris_nl.model.world import World
 
 KIND_RANK = 3
@@ -50,8 +51,10 @@ class Referents:
         if mention.pronoun and mention.pronoun != "one":
             return self._pronoun(mention, types, scope)
         names = self._fitting(mention, types, scope)
+        if not names and mention.quantifier == "all" and not condition:
+            names = self._elsewhere(mention, types, scope)
         if not names:
-            raise Misfit(self._nothing_fits(mention, types))
+            raise Misfit(self._nothing_fits(mention, types, scope))
         if mention.quantifier == "none":
             return Meant(tuple(names), negated=True)
         if mention.quantifier == "rest" or (mention.other and mention.plural):
@@ -294,6 +297,12 @@ class Referents:
         body = parts[0] if len(parts) == 1 else And(tuple(parts))
         return Meant(tuple(names), Quantified("forall", (variable,), body))
 
+    def _elsewhere(self, mention: Mention, types: Sequence[str], scope: Scope) -> list[str]:
+        """What may be where a mention says by then, though nothing but what is left out is there now."""
+        if mention.place is None or self._in_a_region(mention, scope):
+            return []
+        return self._fitting(replace(mention, place=None), types, scope)
+
     def _in_a_region(self, mention: Mention, scope: Scope) -> bool:
         """Whether a place is a room: what is on and in the things there has no predicate of its own."""
         if mention.place is None:
@@ -318,7 +327,10 @@ class Referents:
     def _spoken(self, names: Iterable[str]) -> list[str]:
         return [self._world.entities[n].spoken for n in names]
 
-    def _nothing_fits(self, mention: Mention, types: Sequence[str]) -> str:
+    def _nothing_fits(self, mention: Mention, types: Sequence[str], scope: Scope) -> str:
+        left_out = self._excepted(mention, types, scope)
+        if left_out:
+            return f"Apart from {listed(self._spoken(left_out))} I know none; nothing is left to do."
         there = [self._world.entities[e.name].spoken for e in self._world.of_type(*types)][:6]
         what = " or ".join(types)
         return f"I know no {what} called {mention.text}. I know {', '.join(there)}."

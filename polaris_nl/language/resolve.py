@@ -159,9 +159,8 @@ class Resolver:
         left_out = self.meant(mention, (), scope.after(about)).entities
         found: list[Formula] = []
         for goal in goals:
-            if isinstance(goal, Quantified) and isinstance(goal.body, Imply):
-                parts = (goal.body.condition, *(Not(Equal("?x", name)) for name in left_out))
-                found.append(replace(goal, body=replace(goal.body, condition=And(parts))))
+            if isinstance(goal, Quantified):
+                found.append(_all_but(goal, left_out))
             elif not any(x.args[:1] == (name,) for x in literals_in(goal) for name in left_out):
                 found.append(goal)
         return tuple(found), scope.after(left_out)
@@ -239,3 +238,13 @@ class Resolver:
         raise Unclear(
             question.get(what, f"Which {what}?"), options, parameter.name, parameter.types
         )
+
+
+def _all_but(goal: Quantified, names: Sequence[str]) -> Quantified:
+    """A goal for all of a kind, but for some."""
+    body = goal.body if isinstance(goal.body, Imply) else Imply(And(()), goal.body)
+    condition = body.condition
+    parts = condition.parts if isinstance(condition, And) else (condition,)
+    parts = (*parts, *(Not(Equal("?x", name)) for name in names))
+    condition = parts[0] if len(parts) == 1 else And(parts)
+    return replace(goal, body=replace(body, condition=condition))
