@@ -90,6 +90,8 @@ class MentionFinder:
 
     def _listed(self, tokens: Sequence[str], first: Mention) -> Iterator[Mention]:
         """`a, b and c`; `a or b`; each prefix that ends in a joined one."""
+        if first.text == "one":
+            return  # "In room one and the cup ..."
         parts, at, joined, alternative = [first], first.end, False, False
         while at < len(tokens) and len(parts) < 12:
             step = at + 1 if tokens[at] == COMMA else at

@@ -330,7 +330,9 @@ class Referents:
     def _nothing_fits(self, mention: Mention, types: Sequence[str], scope: Scope) -> str:
         left_out = self._excepted(mention, types, scope)
         if left_out:
-            return f"Apart from {listed(self._spoken(left_out))} I know none; nothing is left to do."
+            return (
+                f"Apart from {listed(self._spoken(left_out))} I know none; nothing is left to do."
+            )
         there = [self._world.entities[e.name].spoken for e in self._world.of_type(*types)][:6]
         what = " or ".join(types)
         return f"I know no {what} called {mention.text}. I know {', '.join(there)}."

@@ -36,6 +36,8 @@ PRESENT_COST = 0.15
 """What it costs to take "once you go there" for something to do, rather than for a condition."""
 SMALL_COST = 0.7
 """What it costs to let a state lean on the verb of the one before: "... and the cupboard closed"."""
+WISH_COST = 0.15
+"""What it costs to take "if ..., and the cup is not on the desk" for a wish, rather than for a condition."""
 TOPIC_COST = 1.2
 CALLED_COST = 0.5
 """What it costs to take a name for that of whoever is spoken to: "tom, go home"."""
@@ -334,8 +336,10 @@ def _steps(
     """What can follow at a position in a mode: end, cost, item, and the mode after it."""
     for clause in clauses:
         yield from _clause_steps(mode, clause, tokens)
+    goes_on = False
     for end, mark in marks:
         following = _after_mark(mode, mark)
+        goes_on = goes_on or following == mode
         if following is not None:
             item = Item("mark", " ".join(tokens[at:end]), mark=mark)
             yield end, MARK_COST, item, following
@@ -343,7 +347,7 @@ def _steps(
         yield end, cost, None, mode
     if tokens[at] not in (BREAK, COMMA):
         yield at + 1, UNKNOWN_COST, Item("unknown", tokens[at]), mode
-    else:
+    elif not goes_on:
         yield at + 1, MARK_COST, None, mode
 
 
@@ -374,7 +378,8 @@ def _clause_steps(mode: _Mode, clause: Clause, tokens: Sequence[str]) -> Iterato
             yield clause.end, clause.cost + SMALL_COST, as_goal, "plain"
     elif clause.kind == "wish":
         if mode in (*_OPEN, "state"):
-            yield clause.end, clause.cost, as_goal, "plain"
+            extra = WISH_COST if mode in ("either", "after-condition") else 0.0
+            yield clause.end, clause.cost + extra, as_goal, "plain"
     elif clause.kind == "goal":
         if mode in (*_OPEN, "negated"):
             yield clause.end, clause.cost, as_goal, "plain"
