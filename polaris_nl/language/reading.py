@@ -6,21 +6,22 @@ from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
 
+from polaris_nl.language.goal_relations import (
+    SEPARATE,
+    SOUGHT,
+    flat,
+    one_at_a_time,
+    says_a_place,
+    superseded,
+    thing_placed,
+)
 from polaris_nl.language.mention import Mention
 from polaris_nl.language.resolve import Resolver
 from polaris_nl.language.scope import Misfit, Scope, Unclear
 from polaris_nl.language.segment import Cut, Item
 from polaris_nl.language.structure import Step
-from polaris_nl.model.formula import Formula, Goal, Literal
+from polaris_nl.model.formula import Goal, Literal
 
-SEPARATE = ("robot-at", "alerted-to", "person-in", "holding", "has")
-"""Goals that are steps of their own when joined by "and": where the robot is, and what happens to people."""
-
-
-ONE_AT_A_TIME = ("robot-at",)
-"""Goals of which one rules the next out: "go to the kitchen and the office" is a sequence."""
-SOUGHT = ("found",)
-"""Goals after which "it should be on the desk" is a hint."""
 VIA = "via"
 """The slot of a wording for what is passed on the way."""
 _FIRST = ("first", "first of all", "beforehand", "before that", "before")
@@ -258,7 +259,7 @@ class _Reader:
     def _in_front(self, goals: tuple[Goal, ...], later: Step) -> None:
         """Puts goals right in front of a step, wherever that is said to come already."""
         at = next((i for i, s in enumerate(self.steps) if s.goals == later.goals), len(self.steps))
-        first = [Step((g,)) for g in goals] if _one_at_a_time(goals) else [Step(goals)]
+        first = [Step((g,)) for g in goals] if one_at_a_time(goals) else [Step(goals)]
         if at == len(self.steps):
             self.steps.append(later)
         self.steps[at:at] = [s for s in first if s.goals not in [x.goals for x in self.steps[:at]]]
@@ -336,7 +337,7 @@ class _Reader:
         elif mark == "until" and previous.forbidden:
             # "Don't open it until she comes" is "when she comes, open it".
             self.steps[-1] = Step(previous.forbidden, when, "condition")
-        elif mark == "until" and "not" in self._how_said.split() and _one_at_a_time(when):
+        elif mark == "until" and "not" in self._how_said.split() and one_at_a_time(when):
             # "Go home, but not until you have been to the kitchen" is an order of the robot's own acts.
             self._in_front(when, self.steps.pop())
         elif mark == "until" and "not" in self._how_said.split():
@@ -361,7 +362,7 @@ class _Reader:
                 forbidden = goals
                 goals = tuple(g.negation if isinstance(g, Literal) else g for g in goals)
         elif item.clause is not None and item.clause.kind == "wish" and not item.clause.positive:
-            forbidden = tuple(x.negation for x in _flat(goals))  # "The cup should not be there."
+            forbidden = tuple(x.negation for x in flat(goals))  # "The cup should not be there."
         elif self._is_hint(item, goals):
             return
         elif self.steps and not self._when and self._supersedes(goals):
@@ -377,7 +378,7 @@ class _Reader:
         elif self._when:
             self.steps.append(Step(goals, self._when, "condition", self._waits))
             self._when, self._how = (), ""
-        elif len(goals) > 1 and _one_at_a_time(goals) and not forbidden:
+        elif len(goals) > 1 and one_at_a_time(goals) and not forbidden:
             self.steps.extend(Step((goal,)) for goal in goals)
         elif self._new_step or self._separate(goals) or forbidden:
             self.steps.append(Step(goals, forbidden=forbidden))
@@ -392,9 +393,9 @@ class _Reader:
         Raises:
             Misfit: there is one.
         """
-        before = [] if self._new_step else _flat(self.steps[-1].goals)
-        there = {_placed(x): x for x in before if x.positive and _places(x)}
-        if any(_places(x) and there.get(_placed(x), x) != x for x in _flat(goals)):
+        before = [] if self._new_step else flat(self.steps[-1].goals)
+        there = {thing_placed(x): x for x in before if x.positive and says_a_place(x)}
+        if any(says_a_place(x) and there.get(thing_placed(x), x) != x for x in flat(goals)):
             raise Misfit(
                 "One thing can't be in two places at once; say for each where it should go."
             )
@@ -402,12 +403,12 @@ class _Reader:
     def _is_hint(self, item: Item, goals: Sequence[Goal]) -> bool:
         """Whether a wish only says where to look: "find the pen, it should be on the nightstand"."""
         sought = (
-            {x.args for x in _flat(self.steps[-1].goals) if x.predicate in SOUGHT}
+            {x.args for x in flat(self.steps[-1].goals) if x.predicate in SOUGHT}
             if self.steps
             else set()
         )
         wished = item.clause is not None and item.clause.kind == "wish"
-        return wished and bool(sought) and all(x.args[:1] in sought for x in _flat(goals))
+        return wished and bool(sought) and all(x.args[:1] in sought for x in flat(goals))
 
     def _by_way_of(self, item: Item, goals: Sequence[Goal]) -> None:
         """`go to the kitchen via the hall`: the hall is a step before."""
@@ -422,13 +423,13 @@ class _Reader:
     def _supersedes(self, goals: Sequence[Goal]) -> bool:
         """Whether the latest step was only the way to goals said in the same breath."""
         last = self.steps[-1]
-        return _superseded(last, goals) and (not self._new_step or bool(last.forbidden))
+        return superseded(last, goals) and (not self._new_step or bool(last.forbidden))
 
     def _separate(self, goals: Sequence[Goal]) -> bool:
         """Whether goals joined by "and" are a step of their own."""
         if not self.steps:
             return True
-        both = (*_flat(self.steps[-1].goals), *_flat(goals))
+        both = (*flat(self.steps[-1].goals), *flat(goals))
         return any(x.predicate in SEPARATE for x in both)
 
     def _literals(self, item: Item, condition: bool) -> tuple[Literal, ...]:
@@ -437,48 +438,8 @@ class _Reader:
         return found  # type: ignore[return-value]
 
 
-def _one_at_a_time(goals: Sequence[Goal]) -> bool:
-    return all(
-        isinstance(g, Literal) and g.positive and g.predicate in ONE_AT_A_TIME for g in goals
-    )
-
-
-def _superseded(step: Step, goals: Sequence[Goal]) -> bool:
-    """Whether goals say what a step was only the way to, or what is wanted in its place.
-
-    "Don't go to the kitchen, go to the laundry" asks for one thing; "get the cup and take it to the
-    desk", "take it off the table and put it in the sink" are about where the cup ends up.
-    """
-    old, new = _flat(step.goals), _flat(goals)
-    if step.when or step.role != "then" or len(old) != len(step.goals) or not old or not new:
-        return False
-    if step.forbidden:
-        denied = _flat(step.forbidden)
-        return all(
-            n.positive and n.predicate == d.predicate and n.args != d.args
-            for d in denied
-            for n in new
-        )
-    moved = {_placed(n) for n in new if n.positive and _places(n)}
-    taken = [o for o in old if o.predicate == "holding" or _places(o)]
-    return len(taken) == len(old) and all(_placed(o) in moved for o in taken)
-
-
-def _places(literal: Literal) -> bool:
-    return literal.predicate in ("at", "in", "has") and len(literal.args) == 2
-
-
-def _placed(literal: Literal) -> str:
-    """The thing whose place a literal says."""
-    return literal.args[-1 if literal.predicate == "has" else 0]
-
-
 def _without(item: Item) -> bool:
     return item.mark == "before" and item.text.startswith("without")
-
-
-def _flat(goals: Sequence[Formula]) -> tuple[Literal, ...]:
-    return tuple(goal for goal in goals if isinstance(goal, Literal))
 
 
 def _all_postposed(items: Sequence[Item]) -> bool:
