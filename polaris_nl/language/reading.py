@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from polaris_nl.language.goal_relations import flat, one_at_a_time
 from polaris_nl.language.resolve import Resolver
-from polaris_nl.language.scope import Misfit, Scope, Unclear
+from polaris_nl.language.scope import Misfit, Scope
 from polaris_nl.language.segment import Cut, Item
 from polaris_nl.language.steps_so_far import StepsSoFar
 from polaris_nl.language.structure import Step
@@ -74,7 +74,6 @@ class _Reader:
         self._waits = False
         self._negate = False
         self._unless: tuple[Literal, ...] = ()
-        self._deferred: tuple[Goal, ...] = ()
         self._postposed = _all_postposed(self.items)
 
     def read(self) -> None:
@@ -91,7 +90,7 @@ class _Reader:
         elif item.mark in ("then", "break"):
             if item.mark == "break":
                 self.done.sentence = len(self.done.steps)
-            self._flush()
+            self.done.flush()
             self.done.new_step = True
             self._sequel = item.mark == "then" and item.text in _SEQUELS
         elif item.mark == "else":
@@ -136,7 +135,7 @@ class _Reader:
         Raises:
             Misfit: something is missing.
         """
-        self._flush()
+        self.done.flush()
         if any(step == Step() for step in self.done.steps):
             raise Misfit("Then there is nothing to do; say what the robot should achieve, or undo.")
         if self._how in ("until", "if") and self._when:
@@ -183,13 +182,7 @@ class _Reader:
         if not self.done.steps or following is None or following.role != "goal":
             raise Misfit("One or the other? Say which.")
         self.at += 1
-        other = self.done.literals(following, condition=False)
-        options = {self.done.resolver.said(g): g for g in (self.done.steps[-1].goals, other)}
-        phrase = f"or {following.text}"
-        chosen = self.done.scope.choices.get(phrase, ())
-        if not chosen or chosen[0] not in options:
-            raise Unclear("Which of the two should I do?", tuple(options), phrase)
-        self.done.steps[-1] = replace(self.done.steps[-1], goals=options[chosen[0]])
+        self.done.choose(following)
 
     def _at_an_end(self) -> bool:
         """Whether no goal follows at once: "first" is said of what came before it."""
@@ -225,7 +218,7 @@ class _Reader:
         elif mark == "before" and _without(self.items[self.at - 2]):
             raise Misfit("I can only leave something out before I do something else.")
         elif mark == "before" and not behind:
-            self._deferred = goals
+            self.done.deferred = goals
         elif mark == "before":
             self.done.steps.append(Step(goals))
         elif behind:
@@ -234,12 +227,6 @@ class _Reader:
         elif not any(set(goals) <= set(step.goals) for step in self.done.steps):
             self.done.steps.append(Step(goals, done=True))
         self.done.new_step = not behind
-
-    def _flush(self) -> None:
-        """What is to come after the goals of a sentence that starts with "before" comes now."""
-        if self._deferred:
-            self.done.steps.append(Step(self._deferred))
-        self._deferred = ()
 
     def _condition_follows(self) -> bool:
         following = self.items[self.at + 1 :]
@@ -313,8 +300,7 @@ class _Reader:
         assert item.clause is not None
         for name, mention in item.clause.bindings:
             if name == VIA and len(goals) == 1 and isinstance(goals[0], Literal):
-                way = self.done.resolver.meant(mention, (), self.done.scope).entities
-                first = replace(goals[0], args=(*goals[0].args[:-1], way[0]))
+                first = self.done.on_the_way(mention, goals[0])
                 self.done.steps.append(
                     Step((first,), self._when, "condition" if self._when else "then")
                 )

@@ -35,6 +35,7 @@ class StepsSoFar:
         new_step: what comes next is a step of its own.
         otherwise: what comes next is what happens otherwise.
         sentence: the number of steps before the sentence that is being read.
+        deferred: goals that come after those of the sentence: "before you go home, ...".
     """
 
     resolver: Resolver
@@ -44,6 +45,7 @@ class StepsSoFar:
     new_step: bool = True
     otherwise: bool = False
     sentence: int = 0
+    deferred: tuple[Goal, ...] = ()
 
     def move_to_front(self) -> None:
         """The latest step comes before the others of its sentence."""
@@ -55,6 +57,31 @@ class StepsSoFar:
         """Adds goals to the latest step."""
         last = self.steps[-1]
         self.steps[-1] = replace(last, goals=tuple(dict.fromkeys((*last.goals, *goals))))
+
+    def flush(self) -> None:
+        """What is to come after the goals of a sentence that starts with "before" comes now."""
+        if self.deferred:
+            self.steps.append(Step(self.deferred))
+        self.deferred = ()
+
+    def choose(self, item: Item) -> None:
+        """A choice between the latest goals and another, which only the user can make.
+
+        Raises:
+            Unclear: it has not been made yet.
+        """
+        other = self.literals(item, condition=False)
+        options = {self.resolver.said(g): g for g in (self.steps[-1].goals, other)}
+        phrase = f"or {item.text}"
+        chosen = self.scope.choices.get(phrase, ())
+        if not chosen or chosen[0] not in options:
+            raise Unclear("Which of the two should I do?", tuple(options), phrase)
+        self.steps[-1] = replace(self.steps[-1], goals=options[chosen[0]])
+
+    def on_the_way(self, mention: Mention, goal: Literal) -> Literal:
+        """The goal that is passed on the way to another: the hall in "go to the kitchen via the hall"."""
+        way = self.resolver.meant(mention, (), self.scope).entities
+        return replace(goal, args=(*goal.args[:-1], way[0]))
 
     def put_in_front(self, goals: tuple[Goal, ...], later: Step) -> None:
         """Puts goals right in front of a step, wherever that is said to come already."""
