@@ -8,6 +8,7 @@ from typing import Literal as OneOf
 
 from polaris_nl.language.grammar import Grammar
 from polaris_nl.language.mention import ASKED, EVERYTHING, SPEAKER, Mention
+from polaris_nl.language.mention_cost import MentionCost
 from polaris_nl.language.template import Parts, Slot, first_words, match
 from polaris_nl.language.verbs import INFLECTED, Inflection, Verbs
 from polaris_nl.model.world import World
@@ -82,6 +83,7 @@ class ClauseFinder:
 
     def __init__(self, world: World, grammar: Grammar) -> None:
         self._world = world
+        self._cost = MentionCost(world)
         self._by_word: dict[str, list[_Form]] = {}
         self._anywhere: list[_Form] = []
         self.verbs = verbs_of(grammar)
@@ -196,7 +198,7 @@ class ClauseFinder:
         inflection: Inflection,
     ) -> Clause:
         bindings = tuple((name, m) for name, m in bound if isinstance(m, Mention))
-        cost = form.cost + sum(_mention_cost(m, form.types.get(n, ()), self) for n, m in bindings)
+        cost = form.cost + sum(self._cost.of(m, form.types.get(n, ())) for n, m in bindings)
         return Clause(
             start,
             end,
@@ -229,21 +231,6 @@ class ClauseFinder:
     def _other_thing(self, mention: Mention, kind: str) -> bool:
         """Whether "it" can be of a type that only this domain has."""
         return mention.pronoun in _THINGS and kind not in _HOUSEHOLD
-
-    def stands_there(self, mention: Mention) -> bool:
-        """Whether one of the things that a mention can mean is where it says, at the start."""
-        places = {c.entity for c in mention.place.candidates} if mention.place else set()
-        things = {c.entity for c in mention.candidates}
-        return any(
-            len(f.args) == 2 and f.args[0] in things and f.args[1] in places
-            for f in self._world.facts
-        )
-
-    def is_furniture_on_another(self, mention: Mention) -> bool:
-        """Whether a surface or a container is said to be on or in another one."""
-        named = [c.entity for m in (mention, mention.place) if m for c in m.candidates]
-        kinds = {self._world.entities[name].type for name in named}
-        return kinds <= {"surface", "container"}
 
     def _place_of_surfaces(self, mention: Mention, types: Sequence[str]) -> bool:
         """A region where a surface is wanted: "bring the cup to the kitchen" asks where in the kitchen."""
@@ -285,39 +272,3 @@ _THINGS = ("it", "that", "this", "one", "them", "they", "these", "those", "both"
 def pronoun_types(pronoun: str) -> tuple[str, ...]:
     """The types of what a pronoun can stand for."""
     return _PRONOUN_TYPES.get(pronoun, ("object", "container", "person"))
-
-
-_BESIDE = 0.5
-_PLACE, _ELSEWHERE, _ON_ANOTHER = 0.15, 0.3, 0.4
-_IDLE_PLACE = 2.5
-"""What a place in a list costs, unless each thing stands where it says: in "the bowl in the cupboard and
-the cup in the drawer" it is where the bowl is to be put."""
-
-
-def _mention_cost(mention: Mention, types: Sequence[str], finder: ClauseFinder) -> float:
-    cost = _place_cost(mention, finder)
-    cost += _BESIDE if mention.beside else 0.0
-    if mention.parts:
-        everywhere = all(p.place for p in mention.parts)
-        placed = sum(
-            _IDLE_PLACE
-            for p in mention.parts
-            if p.place and not (everywhere and finder.stands_there(p))
-        )
-        return cost + 0.02 * len(mention.parts) + placed
-    cost += 0.05 * len(mention.states)
-    best = min((c.rank for c in mention.candidates), default=0)
-    vague = 0.3 if mention.candidates and best == 3 else 0.0
-    place = 0.0
-    if mention.candidates and "surface" in types:
-        kinds = {finder._world.entities[c.entity].type for c in mention.candidates}
-        place = 0.4 if "surface" not in kinds else 0.0
-    return cost + vague + place
-
-
-def _place_cost(mention: Mention, finder: ClauseFinder) -> float:
-    """What it costs to take a place for a description: "the cup on the table", which stands there."""
-    if mention.place is None:
-        return 0.0
-    cost = _PLACE if finder.stands_there(mention) else _PLACE + _ELSEWHERE
-    return cost + (_ON_ANOTHER if finder.is_furniture_on_another(mention) else 0.0)

@@ -69,16 +69,29 @@ class MentionFinder:
                 yield mention
 
     def _excepted(self, tokens: Sequence[str], mention: Mention) -> Iterator[Mention]:
-        """`all the cups except the red one`."""
+        """`all the cups except the red one`; in "... except the red one from the desk" all are there."""
         if not (mention.plural or mention.quantifier in ("all", "rest")):
             return
         size = self._excepting.length_at(tokens, mention.end)
         for left_out in self.at(tokens, mention.end + size) if size else ():
-            text = " ".join(tokens[mention.start : left_out.end])
-            yield replace(mention, end=left_out.end, text=text, excepted=left_out)
+            longer = _longer(tokens, mention, left_out.end)
+            if left_out.place is None or not self._taken_from(tokens, left_out):
+                yield replace(longer, excepted=left_out)
+            elif mention.place is None:
+                alone = replace(left_out, place=None)
+                yield replace(longer, excepted=alone, place=left_out.place)
+
+    def _taken_from(self, tokens: Sequence[str], mention: Mention) -> bool:
+        """Whether a thing's place is where it is taken from: "the cup from the desk"."""
+        assert mention.place is not None
+        end = mention.place.start
+        starts = range(mention.start, end)
+        return any(at + self._from.length_at(tokens, at) == end for at in starts)
 
     def _listed(self, tokens: Sequence[str], first: Mention) -> Iterator[Mention]:
         """`a, b and c`; `a or b`; each prefix that ends in a joined one."""
+        if first.text == "one":
+            return  # "In room one and the cup ..."
         parts, at, joined, alternative = [first], first.end, False, False
         while at < len(tokens) and len(parts) < 12:
             step = at + 1 if tokens[at] == COMMA else at
@@ -100,7 +113,18 @@ class MentionFinder:
             at = following.end
             if joined:
                 text = " ".join(tokens[first.start : at])
-                yield Mention(first.start, at, text, parts=tuple(parts), alternative=alternative)
+                found = Mention(first.start, at, text, parts=tuple(parts), alternative=alternative)
+                yield found
+                yield from self._all_there(tokens, found)
+
+    def _all_there(self, tokens: Sequence[str], several: Mention) -> Iterator[Mention]:
+        """`the cup and the plate on the table`: the place is that of each."""
+        if any(part.place for part in several.parts):
+            return
+        for found in self._described(tokens, several):
+            if found.place is not None:
+                parts = tuple(replace(part, place=found.place) for part in several.parts)
+                yield replace(found, place=None, parts=parts)
 
     def _placed(self, tokens: Sequence[str], mention: Mention) -> Iterator[Mention]:
         """`the cup on the counter by the sink`: what is said of a thing to tell it from others."""

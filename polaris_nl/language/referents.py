@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
+from polaris_nl.language.entity_types import is_a
 from polaris_nl.language.mention import Candidate, Mention
+from polaris_nl.language.pronouns import Pronouns
 from polaris_nl.language.scope import Meant, Misfit, Scope, Unclear
 from polaris_nl.model.formula import (
     And,
@@ -16,6 +18,7 @@ from polaris_nl.model.formula import (
     Quantified,
     Variable,
 )
+from polaris_nl.model.text import listed
 from polaris_nl.model.world import World
 
 KIND_RANK = 3
@@ -29,6 +32,7 @@ class Referents:
 
     def __init__(self, world: World) -> None:
         self._world = world
+        self._pronouns = Pronouns(world)
 
     def meant(
         self, mention: Mention, types: Sequence[str], scope: Scope, condition: bool = False
@@ -48,10 +52,12 @@ class Referents:
             ]
             return Meant(tuple(dict.fromkeys(entities)), negated=mention.quantifier == "none")
         if mention.pronoun and mention.pronoun != "one":
-            return self._pronoun(mention, types, scope)
+            return self._pronouns.meant(mention, types, scope)
         names = self._fitting(mention, types, scope)
+        if not names and mention.quantifier == "all" and not condition:
+            names = self._elsewhere(mention, types, scope)
         if not names:
-            raise Misfit(self._nothing_fits(mention, types))
+            raise Misfit(self._nothing_fits(mention, types, scope))
         if mention.quantifier == "none":
             return Meant(tuple(names), negated=True)
         if mention.quantifier == "rest" or (mention.other and mention.plural):
@@ -118,10 +124,12 @@ class Referents:
         raise Unclear(f"Which {which} do you mean?", options, mention.text)
 
     def _fitting(self, mention: Mention, types: Sequence[str], scope: Scope) -> list[str]:
-        candidates = [c for c in mention.candidates if self.is_a(c.entity, types)]
+        candidates = [c for c in mention.candidates if is_a(self._world, c.entity, types)]
         if mention.pronoun == "one":
             names = reversed(scope.referents)
-            nouns = {self._world.entities[n].noun for n in names if self.is_a(n, types)} - {""}
+            nouns = {self._world.entities[n].noun for n in names if is_a(self._world, n, types)} - {
+                ""
+            }
             candidates = [
                 Candidate(e.name, 1) for e in self._world.of_type(*types) if e.noun in nouns
             ]
@@ -214,63 +222,8 @@ class Referents:
             for f in sorted(self._world.facts)
             if f.predicate == "located"
             and f.args[1] in regions
-            and self.is_a(f.args[0], ("surface",))
+            and is_a(self._world, f.args[0], ("surface",))
         ]
-
-    def _pronoun(self, mention: Mention, types: Sequence[str], scope: Scope) -> Meant:
-        if mention.pronoun == "me":
-            user = self._world.user
-            if user is not None:
-                return Meant((user.name,))
-            people = [p.name for p in self._world.of_type("person")]
-            return self._asked_who(people, mention, scope)
-        both = mention.pronoun.endswith("both") or mention.pronoun.startswith("both")
-        if (
-            mention.pronoun in _PLURAL
-            and scope.group
-            and all(self.is_a(n, types) for n in scope.group)
-        ):
-            return Meant(scope.group)
-        gender = {"she": "female", "her": "female", "he": "male", "him": "male"}.get(
-            mention.pronoun, ""
-        )
-        chosen = scope.choices.get(mention.text, ())
-        if chosen and all(self.is_a(n, types) for n in chosen):
-            return Meant(chosen)
-        told = self.message_told(types, scope) if tuple(types) == ("message",) else None
-        if told is not None:
-            return Meant((told,))
-        fitting = [
-            r
-            for r in reversed(scope.referents)
-            if not both
-            and self.is_a(r, types)
-            and (not gender or self._world.entities[r].gender in (gender, ""))
-        ]
-        if fitting:
-            sure = [r for r in fitting if gender and self._world.entities[r].gender == gender]
-            return Meant(((sure or fitting)[0],))
-        known = [e.name for e in self._world.of_type(*types) if not gender or e.gender == gender]
-        if gender and len(known) == 1:
-            return Meant((known[0],))
-        options = self._spoken(known) if len(known) <= 6 else []
-        who = "Who" if "person" in types else "What"
-        raise Unclear(f'{who} do you mean by "{mention.text}"?', options, mention.text, types)
-
-    def _asked_who(self, people: Sequence[str], mention: Mention, scope: Scope) -> Meant:
-        """The person that "me" was said to be, or a question."""
-        chosen = scope.choices.get(mention.text, ())
-        if len(people) == 1 or chosen:
-            return Meant(chosen or tuple(people))
-        options = self._spoken(people)
-        raise Unclear(f'Who do you mean by "{mention.text}"?', options, mention.text, ("person",))
-
-    def message_told(self, types: Sequence[str], scope: Scope) -> str | None:
-        """The message that the person spoken of last was told: "once she acknowledges" is about hers."""
-        if "message" not in types:
-            return None
-        people = [r for r in reversed(scope.referents) if self.is_a(r, ("person",))]
-        return dict(scope.told).get(people[0]) if people else None
 
     def _every(
         self, mention: Mention, types: Sequence[str], names: Sequence[str], scope: Scope
@@ -292,19 +245,25 @@ class Referents:
         parts.extend(Literal(p, ("?x",), positive) for p, positive in mention.states)
         if mention.place is not None:
             there = self.meant(mention.place, ("surface", "container"), Scope()).entities
-            predicate = "in" if self.is_a(there[0], ("container",)) else "at"
+            predicate = "in" if is_a(self._world, there[0], ("container",)) else "at"
             parts.append(Literal(predicate, ("?x", there[0])))
         left_out = self._excepted(mention, types, scope)
         parts.extend(Not(Equal("?x", name)) for name in left_out)
         body = parts[0] if len(parts) == 1 else And(tuple(parts))
         return Meant(tuple(names), Quantified("forall", (variable,), body))
 
+    def _elsewhere(self, mention: Mention, types: Sequence[str], scope: Scope) -> list[str]:
+        """What may be where a mention says by then, though nothing but what is left out is there now."""
+        if mention.place is None or self._in_a_region(mention, scope):
+            return []
+        return self._fitting(replace(mention, place=None), types, scope)
+
     def _in_a_region(self, mention: Mention, scope: Scope) -> bool:
         """Whether a place is a room: what is on and in the things there has no predicate of its own."""
         if mention.place is None:
             return False
         place = self.meant(mention.place, ("surface", "container", "region"), scope).entities
-        return self.is_a(place[0], ("region",))
+        return is_a(self._world, place[0], ("region",))
 
     def _excepted(self, mention: Mention, types: Sequence[str], scope: Scope) -> tuple[str, ...]:
         """What is left out. "All the cups except the red one": "one" is a cup."""
@@ -313,17 +272,15 @@ class Referents:
         of_kind = tuple(c.entity for c in mention.candidates)
         return self.meant(mention.excepted, types, scope.after(of_kind)).entities
 
-    def is_a(self, entity: str, types: Sequence[str]) -> bool:
-        """Whether an entity is of one of some types; of any where there are none."""
-        known = self._world.entities.get(entity)
-        if known is None:
-            return False
-        return not types or any(self._world.domain.is_a(known.type, t) for t in types)
-
     def _spoken(self, names: Iterable[str]) -> list[str]:
         return [self._world.entities[n].spoken for n in names]
 
-    def _nothing_fits(self, mention: Mention, types: Sequence[str]) -> str:
+    def _nothing_fits(self, mention: Mention, types: Sequence[str], scope: Scope) -> str:
+        left_out = self._excepted(mention, types, scope)
+        if left_out:
+            return (
+                f"Apart from {listed(self._spoken(left_out))} I know none; nothing is left to do."
+            )
         there = [self._world.entities[e.name].spoken for e in self._world.of_type(*types)][:6]
         what = " or ".join(types)
         return f"I know no {what} called {mention.text}. I know {', '.join(there)}."
@@ -331,18 +288,6 @@ class Referents:
 
 EVERY_ONE = ("them", "these", "those", "both", "both of them", "them both", "all of them")
 """Pronouns that answer a question with all that was offered."""
-_PLURAL = (
-    "them",
-    "they",
-    "these",
-    "those",
-    "both",
-    "both of them",
-    "they both",
-    "them both",
-    "all of them",
-    "everything",
-)
 
 
 def _noun(mention: Mention) -> str:

@@ -7,7 +7,9 @@ from contextlib import suppress
 from dataclasses import replace
 
 from polaris_nl.language.clauses import Clause
+from polaris_nl.language.entity_types import is_a
 from polaris_nl.language.mention import ASKED, EVERYTHING, WORDLESS, Mention
+from polaris_nl.language.pronouns import Pronouns
 from polaris_nl.language.referents import Referents
 from polaris_nl.language.scope import Meant, Misfit, Scope, Unclear
 from polaris_nl.model.formula import (
@@ -36,6 +38,7 @@ class Resolver:
         self._world = world
         self._wording = wording
         self._referents = Referents(world)
+        self._pronouns = Pronouns(world)
         self.meant = self._referents.meant
         self.among = self._referents.among
 
@@ -134,7 +137,7 @@ class Resolver:
                 for g in goals
                 for x in literals_in(g)
                 for a in x.args
-                if self._referents.is_a(a, (kind,))
+                if is_a(self._world, a, (kind,))
             )
             old = next((u for u in used if u not in meant), None)
             if old is not None:
@@ -159,9 +162,8 @@ class Resolver:
         left_out = self.meant(mention, (), scope.after(about)).entities
         found: list[Formula] = []
         for goal in goals:
-            if isinstance(goal, Quantified) and isinstance(goal.body, Imply):
-                parts = (goal.body.condition, *(Not(Equal("?x", name)) for name in left_out))
-                found.append(replace(goal, body=replace(goal.body, condition=And(parts))))
+            if isinstance(goal, Quantified):
+                found.append(_all_but(goal, left_out))
             elif not any(x.args[:1] == (name,) for x in literals_in(goal) for name in left_out):
                 found.append(goal)
         return tuple(found), scope.after(left_out)
@@ -212,11 +214,11 @@ class Resolver:
         answered = scope.choices.get(parameter.name)
         if answered:
             return Meant(answered)
-        told = self._referents.message_told(parameter.types, scope)
+        told = self._pronouns.message_told(parameter.types, scope)
         if told is not None:
             return Meant((told,))
         for name in reversed(scope.referents):
-            if self._referents.is_a(name, parameter.types):
+            if is_a(self._world, name, parameter.types):
                 return Meant((name,))
         return self._answered(parameter, scope)
 
@@ -239,3 +241,13 @@ class Resolver:
         raise Unclear(
             question.get(what, f"Which {what}?"), options, parameter.name, parameter.types
         )
+
+
+def _all_but(goal: Quantified, names: Sequence[str]) -> Quantified:
+    """A goal for all of a kind, but for some."""
+    body = goal.body if isinstance(goal.body, Imply) else Imply(And(()), goal.body)
+    condition = body.condition
+    parts = condition.parts if isinstance(condition, And) else (condition,)
+    parts = (*parts, *(Not(Equal("?x", name)) for name in names))
+    condition = parts[0] if len(parts) == 1 else And(parts)
+    return replace(goal, body=replace(body, condition=condition))

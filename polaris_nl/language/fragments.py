@@ -1,0 +1,217 @@
+"""Fragments: what is said without a predicate, such as topics, exceptions, contrasts and reasons."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Literal as OneOf
+
+from polaris_nl.language.clauses import Clause, ClauseFinder
+from polaris_nl.language.common import Common
+from polaris_nl.language.mention import Mention
+from polaris_nl.language.template import Slot, match
+from polaris_nl.language.tokens import BREAK, COMMA
+
+AGAIN_COST = 1.0
+BARE_COST = 2.2
+"""What it costs to take a bare name after "otherwise" or "and" for "the same with that"."""
+TOPIC_COST = 1.2
+CALLED_COST = 0.5
+"""What it costs to take a name for that of whoever is spoken to: "tom, go home"."""
+TELLING_COST = 1.0
+CONTRAST_COST = 0.6
+REASON_COST = 0.6
+REASON_WORD_COST = 0.12
+"""What it costs to pass over a reason ("so that she can read"), and each of its words."""
+_TOLD_WORDS = 12
+"""Words within which what is told of a person ends."""
+_LEADING = frozenset(("otherwise", "else", "and", "then", "finally", "lastly", "next"))
+"""Words after which a bare name asks for the same with that."""
+_PRONOUNS = frozenset(
+    {"it", "them", "they", "one", "ones", "these", "those", "that", "both", "him", "her", "there"}
+)
+Mentions = Sequence[Sequence[Mention]]
+Clauses = Sequence[Sequence[Clause]]
+
+
+@dataclass(frozen=True, slots=True)
+class Fragment:
+    """Words that are no clause and yet say something, or are passed over.
+
+    Attributes:
+        end: where they end, exclusive.
+        cost: the lower the better.
+        role: `topic` is only named; `again` asks for the same with another thing; `except` leaves one
+            out of what was asked for; "" is passed over.
+        mention: the thing that it is about, where it has a role.
+    """
+
+    end: int
+    cost: float
+    role: OneOf["topic", "again", "except", ""] = ""
+    mention: Mention | None = None
+
+
+class Fragments:
+    """Finds the fragments of utterances about one world."""
+
+    def __init__(self, common: Common, clauses: ClauseFinder) -> None:
+        self._clauses = clauses
+        self._again = common.again
+        self._excepting = common.excepting
+        self._contrast = frozenset(common.contrast)
+        self._reasons = frozenset(common.reasons)
+        self._telling = frozenset(word for p in common.telling for word in p)
+        phrases = (*self._excepting, *self._contrast, *self._reasons)
+        self._longest = max(map(len, phrases), default=0)
+
+    def at(
+        self, tokens: Sequence[str], at: int, mentions: Mentions, clauses: Clauses
+    ) -> Iterator[Fragment]:
+        """The fragments that start at a position.
+
+        Args:
+            tokens: the utterance.
+            at: the position.
+            mentions: those that start at each position.
+            clauses: those that start at each position.
+        """
+        yield from self._same_again(tokens, at, mentions)
+        yield from self._left_out(tokens, at, mentions)
+        yield from _same_with(tokens, at, mentions)
+        yield from self._topics(tokens, at, mentions, clauses)
+        yield from self._contrasts(tokens, at, mentions, clauses)
+        yield from self._given_reasons(tokens, at, clauses)
+        yield from self._beneficiaries(tokens, at, mentions)
+        yield from self._told_of_people(tokens, at, mentions, clauses)
+
+    def _phrases(self, tokens: Sequence[str], at: int) -> Iterator[tuple[str, ...]]:
+        for end in range(min(len(tokens), at + self._longest), at, -1):
+            yield tuple(tokens[at:end])
+
+    def _same_again(self, tokens: Sequence[str], at: int, mentions: Mentions) -> Iterator[Fragment]:
+        """`the same for the plate`, `the plate too`."""
+
+        def fillers(slot: Slot, at: int) -> Iterator[tuple[int, object]]:
+            for mention in mentions[at] if at < len(mentions) else ():
+                yield mention.end, mention
+
+        for template in self._again:
+            for end, bound in match(template, tokens, at, fillers):
+                mention = bound[0][1] if bound else None
+                if isinstance(mention, Mention):
+                    yield Fragment(end, AGAIN_COST, "again", mention)
+
+    def _left_out(self, tokens: Sequence[str], at: int, mentions: Mentions) -> Iterator[Fragment]:
+        """`except the red one`."""
+        for words in self._phrases(tokens, at):
+            start = at + len(words)
+            if words in self._excepting and start < len(tokens):
+                for mention in mentions[start]:
+                    yield Fragment(mention.end, AGAIN_COST, "except", mention)
+
+    def _topics(
+        self, tokens: Sequence[str], at: int, mentions: Mentions, clauses: Clauses
+    ) -> Iterator[Fragment]:
+        """`michael, go home`; `the cup and the plate, put them there`, where a pronoun takes it up."""
+        if at and tokens[at - 1] not in (BREAK, COMMA):
+            return
+        for mention in mentions[at]:
+            called = mention.end < len(tokens) and any(
+                c.kind == "goal" for c in clauses[mention.end]
+            )
+            if called and mention.candidates and self._clauses.fits(mention, ("person",)):
+                yield Fragment(mention.end, CALLED_COST, "topic", mention)
+            if mention.candidates or mention.parts:
+                rest = tokens[mention.end : mention.end + 8]
+                if mention.end < len(tokens) and _PRONOUNS & set(rest):
+                    yield Fragment(mention.end, TOPIC_COST, "topic", mention)
+
+    def _contrasts(
+        self, tokens: Sequence[str], at: int, mentions: Mentions, clauses: Clauses
+    ) -> Iterator[Fragment]:
+        """`not the red one`."""
+        for words in self._phrases(tokens, at):
+            start = at + len(words)
+            if words in self._contrast and start < len(tokens):
+                ends = {m.end for m in mentions[start]}
+                ends |= {c.end for c in clauses[start] if c.kind in ("goal", "ellipsis")}
+                yield from (Fragment(end, CONTRAST_COST) for end in ends)
+
+    def _given_reasons(
+        self, tokens: Sequence[str], at: int, clauses: Clauses
+    ) -> Iterator[Fragment]:
+        """`so that she can read`."""
+        for words in self._phrases(tokens, at):
+            if words not in self._reasons or _purpose(words, at, clauses):
+                continue
+            start = at + len(words)
+            for end in range(start, len(tokens) + 1):
+                if end > start and tokens[end - 1] == BREAK:
+                    break
+                yield Fragment(end, REASON_COST + REASON_WORD_COST * (end - start))
+
+    def _beneficiaries(
+        self, tokens: Sequence[str], at: int, mentions: Mentions
+    ) -> Iterator[Fragment]:
+        """`for the resident`, who can be meant by "her" afterwards."""
+        if tokens[at] != "for" or at + 1 >= len(tokens):
+            return
+        for mention in mentions[at + 1]:
+            if self._clauses.fits(mention, ("person",)) and not mention.place:
+                yield Fragment(mention.end, CONTRAST_COST, "topic", mention)
+
+    def _told_of_people(
+        self, tokens: Sequence[str], at: int, mentions: Mentions, clauses: Clauses
+    ) -> Iterator[Fragment]:
+        """`Tom says he is cold`, `somebody left the fridge open`: asks for nothing, but names things."""
+        if at and tokens[at - 1] not in (BREAK, COMMA, "and", "but"):
+            return
+        for person in mentions[at]:
+            verb = person.end
+            if verb >= len(tokens) or tokens[verb] not in self._telling:
+                continue
+            if not self._clauses.fits(person, ("person", "message")):
+                continue
+            for end in range(verb + 1, min(verb + _TOLD_WORDS, len(tokens)) + 1):
+                if tokens[end - 1] in (BREAK, COMMA):
+                    break
+                goes_on = end < len(tokens) and (
+                    tokens[end] in (BREAK, COMMA, "so", "and", "but") or clauses[end]
+                )
+                if goes_on:
+                    named = (person, *_named(mentions, verb + 1, end))
+                    topic = Mention(at, end, " ".join(tokens[at:end]), parts=named)
+                    cost = TELLING_COST + REASON_WORD_COST * (end - verb)
+                    yield Fragment(end, cost, "topic", topic)
+
+
+def _same_with(tokens: Sequence[str], at: int, mentions: Mentions) -> Iterator[Fragment]:
+    """`otherwise the juice`."""
+    if not at or tokens[at - 1] not in _LEADING:
+        return
+    for mention in mentions[at]:
+        ends = mention.end == len(tokens) or tokens[mention.end] in (BREAK, COMMA, "and")
+        if ends and mention.candidates:
+            yield Fragment(mention.end, BARE_COST, "again", mention)
+
+
+def _purpose(words: Sequence[str], at: int, clauses: Clauses) -> bool:
+    """Whether what follows "to" in a reason is something that can be asked for."""
+    if "to" not in words:
+        return False
+    verb = at + words.index("to") + 1
+    return verb < len(clauses) and any(c.kind == "goal" for c in clauses[verb])
+
+
+def _named(mentions: Mentions, at: int, end: int) -> Iterator[Mention]:
+    """The longest mentions in a stretch of words, one after the other."""
+    while at < end:
+        found = max(
+            (m for m in mentions[at] if m.end <= end and m.candidates),
+            key=lambda m: m.end,
+            default=None,
+        )
+        if found is not None:
+            yield found
+        at = found.end if found is not None else at + 1
