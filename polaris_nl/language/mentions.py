@@ -75,18 +75,16 @@ class MentionFinder:
         size = self._excepting.length_at(tokens, mention.end)
         for left_out in self.at(tokens, mention.end + size) if size else ():
             longer = _longer(tokens, mention, left_out.end)
-            if left_out.place is None or not self._taken_from(tokens, left_out):
+            place = left_out.parts[-1].place if left_out.parts else left_out.place
+            if place is None or not self._taken_from(tokens, left_out.start, place):
                 yield replace(longer, excepted=left_out)
             elif mention.place is None:
-                alone = replace(left_out, place=None)
-                yield replace(longer, excepted=alone, place=left_out.place)
+                yield replace(longer, excepted=_without_place(left_out), place=place)
 
-    def _taken_from(self, tokens: Sequence[str], mention: Mention) -> bool:
+    def _taken_from(self, tokens: Sequence[str], start: int, place: Mention) -> bool:
         """Whether a thing's place is where it is taken from: "the cup from the desk"."""
-        assert mention.place is not None
-        end = mention.place.start
-        starts = range(mention.start, end)
-        return any(at + self._from.length_at(tokens, at) == end for at in starts)
+        starts = range(start, place.start)
+        return any(at + self._from.length_at(tokens, at) == place.start for at in starts)
 
     def _listed(self, tokens: Sequence[str], first: Mention) -> Iterator[Mention]:
         """`a, b and c`; `a or b`; each prefix that ends in a joined one."""
@@ -261,3 +259,7 @@ def _adjectives(grammar: Grammar) -> Mapping[str, tuple[tuple[str, bool], ...]]:
 
 def _longer(tokens: Sequence[str], mention: Mention, end: int) -> Mention:
     return replace(mention, end=end, text=" ".join(tokens[mention.start : end]))
+
+
+def _without_place(mention: Mention) -> Mention:
+    return replace(mention, place=None, parts=tuple(map(_without_place, mention.parts)))
