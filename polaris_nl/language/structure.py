@@ -91,7 +91,7 @@ class Builder:
         for transition in self.program.outgoing(source):
             if transition.conditional == set(step.when):
                 self.here = self._end(transition.target)
-                if step.goals:
+                if not set(step.goals) <= set(self.program.checkpoints[self.here].goals):
                     self._next(Step(step.goals))
                 return
         self._add(step.goals, step.when, source)
