@@ -15,7 +15,7 @@ from polaris_nl.automaton.program import Program, read_program
 from polaris_nl.model.data import shipped_worlds
 from polaris_nl.model.errors import FileError, PolarisError, UsageError
 from polaris_nl.model.world import World
-from polaris_nl.model.world_file import load_world, read_world
+from polaris_nl.model.world_file import load_world
 from polaris_nl.render.glyphs import DEFAULT_WIDTH
 from polaris_nl.render.layout import Row, wrapped
 from polaris_nl.session import Session
@@ -87,16 +87,15 @@ def world_for(named: str | None, program: Program | None, beside: Path | None) -
 def _world_beside(name: str, beside: Path | None) -> World:
     folders = [beside.parent] if beside else []
     for folder in (*folders, Path()):
-        for path in sorted((*folder.glob("*.yaml"), *folder.glob("worlds/*.yaml"))):
+        patterns = ("*.yaml", "worlds/*.yaml", "*.pddl")
+        for path in sorted(found for pattern in patterns for found in folder.glob(pattern)):
             try:
-                world = read_world(path)
+                world = load_world(str(path))
             except PolarisError:
                 continue
             if world.name == name:
                 return world
-    raise FileError(
-        f"The program's world {name} isn't shipped; name its file with --world FILE.yaml."
-    )
+    raise FileError(f"The program's world {name} isn't shipped; name its file with --world FILE.")
 
 
 def opened(arguments: Namespace) -> tuple[Program, World]:

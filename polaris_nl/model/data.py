@@ -48,7 +48,7 @@ def world_path(name: str, relative_to: Path | None = None) -> Path:
     Raises:
         FileError: there is neither.
     """
-    return _find(name, relative_to, shipped_worlds, "world", (".yaml", ".yml"))
+    return _find(name, relative_to, shipped_worlds, "world", (".yaml", ".yml", ".pddl"))
 
 
 def _find(

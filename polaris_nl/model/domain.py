@@ -85,6 +85,8 @@ class Domain:
             comments; without any, all that no operator changes).
         mutexes: groups that the file states in `; MUTEX:` comments; the others are found from the
             operators.
+        commanded, uncommanded: where operators are anybody's, the types of those who carry them out
+            and of those who can't be told to (see `polaris_nl.model.agents`).
         source: the PDDL text, as it was read.
         path: where it was read, or None.
     """
@@ -96,6 +98,8 @@ class Domain:
     constants: Mapping[str, str] = field(default_factory=dict)
     exogenous: frozenset[str] = frozenset()
     mutexes: tuple[MutexGroup, ...] = ()
+    commanded: tuple[str, ...] = ()
+    uncommanded: tuple[str, ...] = ()
     source: str = field(default="", repr=False)
     path: Path | None = None
 

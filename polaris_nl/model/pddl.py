@@ -1,7 +1,7 @@
 """Reads PDDL domain files.
 
 Understood are types, constants, predicates and operators of STRIPS and ADL; what planning with
-costs or time adds is kept in the source text for the planner and otherwise passed over. Four kinds
+costs or time adds is kept in the source text for the planner and otherwise passed over. Five kinds
 of comment carry what PDDL has no syntax for:
 
     ; NL: [0] is near [1]                     phrases for the predicate or operator above or beside
@@ -9,22 +9,30 @@ of comment carry what PDDL has no syntax for:
     ; MUTEX: (acknowledged ?m) (dismissed ?m)  at most one of them holds (see `MutexGroup`)
     ; EXOGENOUS: at in acknowledged            people bring these about (without such a
                                               comment: whatever no operator changes)
+    ; COMMANDED: robot                        who carries out operators that are anybody's (without
+                                              it: `robot`; see `polaris_nl.model.agents`)
 """
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
-from typing import NamedTuple
 
-from polaris_nl.model.domain import Domain, Operator, Predicate, effect_literals
+from polaris_nl.model.agents import narrowed
+from polaris_nl.model.domain import Domain, Operator, Predicate
 from polaris_nl.model.errors import DomainError, FileError, FormatError, did_you_mean
 from polaris_nl.model.formula import And, Formula, Literal, Variable, formula_of, typed_list
+from polaris_nl.model.pddl_comments import (
+    Comment,
+    check_predicate,
+    commanded_in,
+    comments_in,
+    exogenous_in,
+    hint_at,
+    mutexes_in,
+)
 from polaris_nl.model.sexpr import Group, Node, Word, read_all
-from polaris_nl.model.state import MutexGroup
 
 MAX_BYTES = 4_000_000
-_COMMENT = re.compile(r";+\s*(?:(NL|MUTEX|EXOGENOUS):\s*(.*)|(INTERNAL)\b)", re.IGNORECASE)
 
 
 def read_domain(path: Path) -> Domain:
@@ -66,7 +74,7 @@ def parse_domain(text: str, path: Path | None = None) -> Domain:
     name_node = root.items[1]
     if not isinstance(name_node, Group) or name_node.head != "domain" or len(name_node.items) != 2:
         raise DomainError("This is no PDDL domain: (domain NAME) is missing.", path, name_node.line)
-    comments = _comments(text)
+    comments = comments_in(text)
     parents: dict[str, tuple[str, ...]] = {}
     predicates: dict[str, Predicate] = {}
     operators: dict[str, Operator] = {}
@@ -104,33 +112,13 @@ def parse_domain(text: str, path: Path | None = None) -> Domain:
         predicates=predicates,
         operators=operators,
         constants=constants,
-        exogenous=_exogenous(comments, predicates, operators),
-        mutexes=_mutexes(comments, predicates),
+        exogenous=exogenous_in(comments, predicates, operators),
+        mutexes=mutexes_in(comments, predicates),
         source=text,
         path=path,
     )
     _check(domain, root)
-    return domain
-
-
-class _Comment(NamedTuple):
-    """A comment that says something: its kind and text, and whether it has a line of its own."""
-
-    kind: str
-    text: str
-    alone: bool
-
-
-def _comments(text: str) -> dict[int, _Comment]:
-    found = {}
-    for number, line in enumerate(text.splitlines(), 1):
-        match = _COMMENT.search(line)
-        if match:
-            alone = not line[: match.start()].strip()
-            found[number] = _Comment(
-                (match[1] or match[3]).upper(), (match[2] or "").strip(), alone
-            )
-    return found
+    return narrowed(domain, commanded_in(comments, domain.types))
 
 
 def _types(section: Group) -> dict[str, tuple[str, ...]]:
@@ -147,30 +135,19 @@ def _list(section: Group) -> tuple[Variable, ...]:
     return tuple(typed_list(Group(section.items[1:], section.line)))
 
 
-def _predicates(section: Group, comments: dict[int, _Comment]) -> list[Predicate]:
+def _predicates(section: Group, comments: dict[int, Comment]) -> list[Predicate]:
     found = []
     for node in section.items[1:]:
         if not isinstance(node, Group) or not node.head:
             raise FormatError(
                 "A predicate such as (at ?o - object ?s - surface) was expected.", line=node.line
             )
-        hint, internal = _hint(node.line, comments)
+        hint, internal = hint_at(node.line, comments)
         found.append(Predicate(node.head, _list(node), hint, internal))
     return found
 
 
-def _hint(line: int, comments: dict[int, _Comment]) -> tuple[str, bool]:
-    """The phrases beside a definition, or on the lines right above it that hold nothing else."""
-    found = [comments[line]] if line in comments else []
-    above = line - 1
-    while above in comments and comments[above].alone:
-        found.append(comments[above])
-        above -= 1
-    hint = next((comment.text for comment in found if comment.kind == "NL"), "")
-    return hint, any(comment.kind == "INTERNAL" for comment in found)
-
-
-def _operator(section: Group, comments: dict[int, _Comment]) -> Operator:
+def _operator(section: Group, comments: dict[int, Comment]) -> Operator:
     if len(section.items) < 2 or len(section.items) % 2:
         raise FormatError(
             "An operator is (:action NAME :parameters ... :precondition ... :effect ...).",
@@ -181,7 +158,7 @@ def _operator(section: Group, comments: dict[int, _Comment]) -> Operator:
     parameters: tuple[Variable, ...] = ()
     if ":parameters" in fields:
         parameters = tuple(typed_list(fields[":parameters"]))
-    hint, internal = _hint(section.line, comments)
+    hint, internal = hint_at(section.line, comments)
     return Operator(
         name,
         parameters,
@@ -214,43 +191,6 @@ def _word(node: Node) -> str:
     if not isinstance(node, Word):
         raise FormatError("A name was expected here, not a list.", line=node.line)
     return node.text
-
-
-def _mutexes(
-    comments: dict[int, _Comment], predicates: dict[str, Predicate]
-) -> tuple[MutexGroup, ...]:
-    groups = []
-    for line, (kind, text, _) in comments.items():
-        if kind != "MUTEX":
-            continue
-        patterns = tuple(formula_of(node) for node in read_all(text, line))
-        for pattern in patterns:
-            if not isinstance(pattern, Literal) or not pattern.positive:
-                raise FormatError(
-                    "A MUTEX comment lists atoms such as (acknowledged ?m).", line=line
-                )
-            _check_predicate(pattern, predicates, line)
-        groups.append(MutexGroup(tuple(p for p in patterns if isinstance(p, Literal))))
-    return tuple(groups)
-
-
-def _exogenous(
-    comments: dict[int, _Comment],
-    predicates: dict[str, Predicate],
-    operators: dict[str, Operator],
-) -> frozenset[str]:
-    found = set()
-    for line, (kind, text, _) in comments.items():
-        for name in text.lower().split() if kind == "EXOGENOUS" else ():
-            if name not in predicates:
-                raise FormatError(
-                    f"There is no predicate {name}.{did_you_mean(name, predicates)}", line=line
-                )
-            found.add(name)
-    if found:
-        return frozenset(found)
-    changed = {e.predicate for op in operators.values() for e in effect_literals(op.effect)}
-    return frozenset(predicates) - changed
 
 
 def _check(domain: Domain, root: Group) -> None:
@@ -286,16 +226,6 @@ def _check_atoms(node: Node, domain: Domain) -> None:
     elif node.head not in ("increase", "decrease", "assign"):
         atom = formula_of(node)
         if isinstance(atom, Literal):
-            _check_predicate(atom, dict(domain.predicates), node.line)
+            check_predicate(atom, dict(domain.predicates), node.line)
 
 
-def _check_predicate(atom: Literal, predicates: dict[str, Predicate], line: int) -> None:
-    predicate = predicates.get(atom.predicate)
-    if predicate is None:
-        hint = did_you_mean(atom.predicate, predicates)
-        raise FormatError(f"There is no predicate {atom.predicate}.{hint}", line=line)
-    if len(predicate.parameters) != len(atom.args):
-        raise FormatError(
-            f"{predicate} takes {len(predicate.parameters)} terms, but {atom} has {len(atom.args)}.",
-            line=line,
-        )

@@ -11,10 +11,11 @@ from polaris_nl.model.data import domain_path, world_path
 from polaris_nl.model.domain import Domain
 from polaris_nl.model.errors import FormatError, WorldError, did_you_mean
 from polaris_nl.model.formula import Formula, Literal, parse_formula
-from polaris_nl.model.pddl import read_domain
+from polaris_nl.model.pddl import parse_domain, read_domain
+from polaris_nl.model.problem import is_problem, parse_problem, read_problem
 from polaris_nl.model.schema import check_schema
 from polaris_nl.model.world import Entity, HumanAction, Objective, Point, Scenario, World
-from polaris_nl.model.yaml_lines import Lined, read_yaml
+from polaris_nl.model.yaml_lines import Lined, parse_yaml, read_yaml
 
 SCHEMA = "polaris-world/1"
 _FIELDS = ("schema", "name", "domain", "entities", "facts", "map", "scenario")
@@ -26,13 +27,30 @@ _NAME = re.compile(r"[a-z0-9][a-z0-9_-]*\Z")
 
 
 def load_world(name: str) -> World:
-    """Reads a shipped world, or one named by a path.
+    """Reads a shipped world, or one named by a path: a world file or a PDDL problem.
 
     Raises:
         FileError: there is no such world, or it or its domain can't be read.
         FormatError: it or its domain is not as it should be; file and line are named.
     """
-    return read_world(world_path(name))
+    path = world_path(name)
+    return read_problem(path) if path.suffix == ".pddl" else read_world(path)
+
+
+def world_of_texts(world: str, domain: str) -> World:
+    """Makes a world of the texts of its file (or PDDL problem) and its domain, as logs keep them.
+
+    The map is left out, as it lies in a file of its own.
+
+    Raises:
+        FormatError: either is not as it should be; the line is named.
+    """
+    known = parse_domain(domain)
+    if is_problem(world):
+        return parse_problem(world, known)
+    fields = parse_yaml(world).mapping("A world", _FIELDS)
+    check_schema(fields["schema"].text("schema") if "schema" in fields else "", SCHEMA, "world")
+    return _world(fields, known, world, None)
 
 
 def read_world(path: Path) -> World:
@@ -59,19 +77,19 @@ def read_world(path: Path) -> World:
         raise WorldError(error.reason, path, error.line) from error
 
 
-def _world(fields: dict[str, Lined], domain: Domain, text: str, path: Path) -> World:
+def _world(fields: dict[str, Lined], domain: Domain, text: str, path: Path | None) -> World:
     entities = _entities(fields.get("entities", Lined(None, 1)), domain)
     types = {**domain.constants, **{e.name: e.type for e in entities.values()}}
     facts = [
         _fact(item, domain, types) for item in fields.get("facts", Lined(None, 1)).items("facts")
     ]
     map_path = None
-    if "map" in fields:
+    if "map" in fields and path is not None:
         map_path = path.parent / fields["map"].text("map")
         if not map_path.is_file():
             raise FormatError(f"There is no map file {map_path}.", line=fields["map"].line)
     return World(
-        name=fields["name"].text("name") if "name" in fields else path.stem,
+        name=_name(fields, path),
         domain=domain,
         entities=entities,
         facts=frozenset(facts),
@@ -82,6 +100,12 @@ def _world(fields: dict[str, Lined], domain: Domain, text: str, path: Path) -> W
         source=text,
         path=path,
     )
+
+
+def _name(fields: dict[str, Lined], path: Path | None) -> str:
+    if "name" in fields:
+        return fields["name"].text("name")
+    return path.stem if path is not None else "world"
 
 
 def _entities(root: Lined, domain: Domain) -> dict[str, Entity]:

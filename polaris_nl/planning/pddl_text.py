@@ -38,7 +38,8 @@ def domain_text(domain: Domain, written: bool = False) -> str:
         domain: the domain.
         written: write it from its parts even where its source would do, as it has been added to.
     """
-    if domain.source and not domain.object_is_a_type and not written:
+    as_it_is = not domain.object_is_a_type and not domain.uncommanded
+    if domain.source and as_it_is and not written:
         return domain.source
     types = " ".join(_type_line(domain, kind) for kind in domain.types)
     predicates = " ".join(
