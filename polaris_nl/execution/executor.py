@@ -35,10 +35,10 @@ from polaris_nl.execution.events import (
     TransitionTaken,
     Waiting,
 )
-from polaris_nl.execution.expectations import needed_places, perceived_instead
+from polaris_nl.execution.expectations import kept_goals, needed_places, perceived_instead
 from polaris_nl.execution.state import TERMINAL, ExecutorState, HumanCommand, Inputs, Phase, RunPlan
 from polaris_nl.model.domain import Action
-from polaris_nl.model.evaluate import after, effects
+from polaris_nl.model.evaluate import effects
 from polaris_nl.model.formula import Literal
 from polaris_nl.model.text import listed, sentence
 
@@ -327,7 +327,8 @@ def _confirmed(work: _Step, action: Action, seconds: float, reported: str) -> No
 
 
 def _reach(work: _Step) -> None:
-    missing = tuple(x for x in _kept_goals(work) if not work.sees(x))
+    kept = kept_goals(work.run.plan.segments[work.state.segment], work.run.world)
+    missing = tuple(x for x in kept if not work.sees(x))
     if missing:
         _deviate(work, missing)
         return
@@ -339,22 +340,6 @@ def _reach(work: _Step) -> None:
     work.go(
         "idle", checkpoint=checkpoint.id, segment="", reached=(*work.state.reached, checkpoint.id)
     )
-
-
-def _kept_goals(work: _Step) -> tuple[Literal, ...]:
-    """The segment's goals that held before, so that no action brings them about; they are to hold still.
-
-    The others were perceived when their actions were done, and may have served since: a dish may be
-    washed before the next one is brought.
-    """
-    segment = work.run.plan.segments[work.state.segment]
-    brought: set[Literal] = set()
-    state = segment.before
-    for action in segment.actions:
-        operator = work.run.world.domain.operators[action.operator]
-        brought.update(effects(action, operator, state, work.run.world))
-        state = after(action, operator, state, work.run.world)
-    return tuple(x for x in segment.goals if x not in brought)
 
 
 def _deviate(work: _Step, missing: tuple[Literal, ...]) -> None:

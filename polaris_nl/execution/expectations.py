@@ -6,7 +6,10 @@ from collections.abc import Sequence
 
 from polaris_nl.execution.backend import Observation
 from polaris_nl.model.domain import Action, Operator, conjuncts
+from polaris_nl.model.evaluate import after, effects
 from polaris_nl.model.formula import Literal, bind
+from polaris_nl.model.world import World
+from polaris_nl.planning.result import Segment
 
 PLACES = ("at", "in", "has")
 """Where objects are: if that is not as planned, somebody has moved one."""
@@ -21,6 +24,21 @@ def needed_places(action: Action, operator: Operator) -> tuple[Literal, ...]:
         for part in conjuncts(bound)
         if isinstance(part, Literal) and part.positive and part.predicate in PLACES
     )
+
+
+def kept_goals(segment: Segment, world: World) -> tuple[Literal, ...]:
+    """The segment's goals that held before, so that no action brings them about; they are to hold still.
+
+    The others were perceived when their actions were done, and may have served since: a dish may be
+    washed before the next one is brought.
+    """
+    brought: set[Literal] = set()
+    state = segment.before
+    for action in segment.actions:
+        operator = world.domain.operators[action.operator]
+        brought.update(effects(action, operator, state, world))
+        state = after(action, operator, state, world)
+    return tuple(x for x in segment.goals if x not in brought)
 
 
 def perceived_instead(expected: Sequence[Literal], observation: Observation) -> tuple[Literal, ...]:

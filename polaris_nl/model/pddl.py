@@ -227,5 +227,3 @@ def _check_atoms(node: Node, domain: Domain) -> None:
         atom = formula_of(node)
         if isinstance(atom, Literal):
             check_predicate(atom, dict(domain.predicates), node.line)
-
-

@@ -31,9 +31,7 @@ def comments_in(text: str) -> dict[int, Comment]:
         match = _COMMENT.search(line)
         if match:
             alone = not line[: match.start()].strip()
-            found[number] = Comment(
-                (match[1] or match[3]).upper(), (match[2] or "").strip(), alone
-            )
+            found[number] = Comment((match[1] or match[3]).upper(), (match[2] or "").strip(), alone)
     return found
 
 
