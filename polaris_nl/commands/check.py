@@ -10,10 +10,13 @@ from pathlib import Path
 from polaris_nl.automaton.program import read_program
 from polaris_nl.automaton.validation import validate
 from polaris_nl.commands.common import complain, print_json, print_text, shown_path, world_for
+from polaris_nl.interchange.isl_import import read_isl
 from polaris_nl.language.grammar_check import SCHEMAS, Findings, check_domain, check_grammar_file
 from polaris_nl.language.intents import INTENTS
 from polaris_nl.model.errors import FileError, FormatError, GrammarError, PolarisError
 from polaris_nl.model.pddl import read_domain
+from polaris_nl.model.problem import is_problem, read_problem
+from polaris_nl.model.text import listed
 from polaris_nl.model.world_file import read_world
 from polaris_nl.model.yaml_lines import Lined, read_yaml
 
@@ -71,12 +74,30 @@ def _checked(path: Path) -> _Checked:
         faults = validate(program.automaton, world_for(None, program, path))
         return _Checked("a program", tuple(fault.text for fault in faults))
     if path.suffix == ".pddl":
-        return _of("a domain", check_domain(read_domain(path)))
+        return _pddl(path)
+    if path.suffix == ".isl":
+        read_isl(path)
+        return _Checked("a program in ISL")
     if path.suffix in (".yaml", ".yml"):
         return _yaml(path)
     raise FileError(
-        f"{path} is neither a domain (.pddl), world or grammar (.yaml) nor program (.json)."
+        f"{path} is neither a domain or problem (.pddl), world or grammar (.yaml) nor program (.json, .isl)."
     )
+
+
+def _pddl(path: Path) -> _Checked:
+    try:
+        problem = is_problem(path.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError):
+        problem = False  # Reading it as a domain says what is wrong.
+    if problem:
+        return _of("a problem, usable as a world", check_domain(read_problem(path).domain))
+    domain = read_domain(path)
+    what = "a domain"
+    if domain.uncommanded:
+        acts, others = listed(domain.commanded), listed(domain.uncommanded)
+        what = f"a domain whose operators are the {acts}'s to carry out (type {others} is nobody to command)"
+    return _of(what, check_domain(domain))
 
 
 def _yaml(path: Path) -> _Checked:

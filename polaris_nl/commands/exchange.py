@@ -2,68 +2,128 @@
 
 from __future__ import annotations
 
+import json
 from argparse import Namespace
+from pathlib import Path
 
 from polaris_nl.automaton.automaton import Automaton
-from polaris_nl.commands.common import opened, print_json
-from polaris_nl.model.errors import PolarisError
-from polaris_nl.model.text import listed
-from polaris_nl.model.wording import Wording
+from polaris_nl.automaton.program import Program, program_json, write_program
+from polaris_nl.automaton.validation import validate
+from polaris_nl.commands.common import complain, opened, print_json, print_text, shown_path
+from polaris_nl.interchange.isl_export import export_isl
+from polaris_nl.interchange.isl_import import automaton_of, faults, notes, read_isl
+from polaris_nl.interchange.isl_syntax import Isl
+from polaris_nl.interchange.properties import Property, properties
+from polaris_nl.model.data import shipped_worlds
+from polaris_nl.model.errors import FormatError, UsageError
+from polaris_nl.model.text import sentence
+from polaris_nl.model.world import World
+from polaris_nl.model.world_file import load_world
 from polaris_nl.render.glyphs import plain
+from polaris_nl.render.graphs import dot, mermaid
 from polaris_nl.session import Session
-
-ISL_LATER = (
-    "ISL isn't read or written yet; it comes in a later version. Export works to mermaid and dot."
-)
 
 
 def run(arguments: Namespace) -> int:
-    """Exports to Mermaid or DOT; ISL is said to come later."""
-    if arguments.command == "import" or arguments.to == "isl":
-        raise PolarisError(ISL_LATER)
+    """Reads or writes another form; 1 where something of the program can't be said in it."""
+    return _import(arguments) if arguments.command == "import" else _export(arguments)
+
+
+def _export(arguments: Namespace) -> int:
     program, world = opened(arguments)
-    with Session(world, program.automaton) as session:
-        text = (mermaid if arguments.to == "mermaid" else dot)(program.automaton, session.wording)
-    if arguments.json:
-        print_json({"form": arguments.to, "text": text})
+    missing: tuple[str, ...] = ()
+    changed: tuple[str, ...] = ()
+    if arguments.to == "isl":
+        export = export_isl(program.automaton, world.domain)
+        text, missing, changed = export.text.rstrip("\n"), export.missing, export.notes
     else:
-        print(text)
-    return 0
+        draw = mermaid if arguments.to == "mermaid" else dot
+        with Session(world, program.automaton) as session:
+            text = draw(program.automaton, session.wording)
+    if arguments.json:
+        value = {"form": arguments.to, "text": text}
+        print_json({**value, "missing": list(missing), "notes": list(changed)})
+    else:
+        for reason in missing:
+            complain(plain(reason))
+        for note in changed:
+            complain(f"note: {plain(note)}")
+        if not missing:
+            print(text)
+    return 1 if missing else 0
 
 
-def mermaid(automaton: Automaton, wording: Wording) -> str:
-    """A Mermaid flow chart."""
-    lines = ["flowchart TD"]
-    for checkpoint in automaton.checkpoints.values():
-        goals = listed([wording.goal(g) for g in checkpoint.goals])
-        label = f"{checkpoint.name}<br/>{goals}" if goals else checkpoint.name
-        lines.append(f'  {checkpoint.id}["{_quoted(label)}"]')
-    for transition in automaton.transitions.values():
-        label = listed([wording.event(x) for x in transition.when])
-        if not label and automaton.is_else(transition.id):
-            label = "otherwise"
-        arrow = f'-->|"{_quoted(label)}"|' if label else "-->"
-        lines.append(f"  {transition.source} {arrow} {transition.target}")
-    return "\n".join(lines)
+def _import(arguments: Namespace) -> int:
+    path: Path = arguments.file
+    isl = read_isl(path)
+    world = load_world(arguments.world) if arguments.world else _world_of(isl)
+    found = [str(FormatError(e.reason, path, e.line)) for e in faults(isl, world)]
+    if found:
+        if arguments.json:
+            print_json({"file": str(path), "program": None, "faults": found})
+        for fault in found if not arguments.json else ():
+            complain(fault)
+        return 1
+    automaton = automaton_of(isl)
+    program = Program(automaton, world.domain.name, world.name)
+    if arguments.program is not None:
+        if arguments.program.exists():
+            raise UsageError(f"{arguments.program} is there already; name another with --program.")
+        write_program(program, arguments.program)
+    return _tell(arguments, program, properties(automaton), _said_of(isl, automaton, world))
 
 
-def dot(automaton: Automaton, wording: Wording) -> str:
-    """A Graphviz digraph."""
-    lines = ["digraph program {", "  node [shape=box];"]
-    for checkpoint in automaton.checkpoints.values():
-        goals = listed([wording.goal(g) for g in checkpoint.goals])
-        label = f"{checkpoint.name}\\n{goals}" if goals else checkpoint.name
-        lines.append(f'  {checkpoint.id} [label="{_quoted(label, dot=True)}"];')
-    for transition in automaton.transitions.values():
-        label = listed([wording.event(x) for x in transition.when])
-        if not label and automaton.is_else(transition.id):
-            label = "otherwise"
-        lines.append(
-            f'  {transition.source} -> {transition.target} [label="{_quoted(label, dot=True)}"];'
+def _said_of(isl: Isl, automaton: Automaton, world: World) -> tuple[str, ...]:
+    """What doesn't come along, and what has to be mended before the program can be planned."""
+    problems = (fault.text for fault in validate(automaton, world) if fault.cause == "invalid")
+    people = ""
+    if world.domain.uncommanded:
+        kinds = " or ".join(world.domain.uncommanded)
+        people = f"The robot acts; what a {kinds} does, it waits for."
+    return (*notes(isl), *([people] if people else []), *problems)
+
+
+def _tell(
+    arguments: Namespace, program: Program, shape: tuple[Property, ...], said: tuple[str, ...]
+) -> int:
+    against = [text for found in shape for text in found.against]
+    if arguments.json:
+        print_json(
+            {
+                "file": str(arguments.file),
+                "program": program_json(program),
+                "properties": {found.name: found.holds for found in shape},
+                "against": {found.name: list(found.against) for found in shape if not found.holds},
+                "notes": list(said),
+                "faults": [],
+            }
         )
-    return "\n".join([*lines, "}"])
+        return 1 if against else 0
+    for note in said:
+        complain(f"note: {plain(note)}")
+    for found in shape:
+        for text in found.against:
+            complain(plain(f"not {found.name.replace('_', '-')}: {text}"))
+    if arguments.program is None:
+        print(json.dumps(program_json(program), indent=2, ensure_ascii=False))
+    else:
+        count = len(program.automaton.checkpoints) - 1
+        checkpoints = f"{count} checkpoint{'' if count == 1 else 's'}"
+        shown = f"polaris-nl plan {shown_path(arguments.program)}"
+        print_text(sentence(f"{checkpoints}, saved; see the plan with: {shown}"))
+    return 1 if against else 0
 
 
-def _quoted(text: str, dot: bool = False) -> str:
-    text = plain(text)
-    return text.replace('"', '\\"') if dot else text.replace('"', "#quot;")
+def _world_of(isl: Isl) -> World:
+    """The one shipped world of an ISL text's domain.
+
+    Raises:
+        UsageError: there isn't exactly one.
+    """
+    worlds = [load_world(name) for name in shipped_worlds()]
+    fitting = [world for world in worlds if world.domain.name == isl.domain]
+    if len(fitting) != 1:
+        raise UsageError(
+            f"Which world? The program is for the domain {isl.domain}; name a world of it with --world."
+        )
+    return fitting[0]

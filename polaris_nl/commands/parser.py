@@ -58,8 +58,9 @@ class _Adder:
 
 def _world(parser: _Parser, required: bool = False) -> None:
     parser.add_argument(
-        "--world", metavar="W", required=required, help="a shipped world (see: worlds), or a file"
-    )
+        "--world", metavar="W", required=required,
+        help="a shipped world (see: worlds), a world file, or a PDDL problem",
+    )  # fmt: skip
 
 
 def _program_option(parser: _Parser) -> None:
@@ -143,10 +144,13 @@ def _planning(adder: _Adder) -> None:
     which.add_argument("--not", metavar="GOAL", dest="why_not", help="a goal in words, or as PDDL")
     score = adder.add(
         "score",
-        "count what a program achieves in its scenario",
-        "polaris-nl score lunch.polaris.json",
+        "count what a program achieves in its scenario, or what a logged run achieved",
+        "polaris-nl score lunch.polaris.json\n  polaris-nl score lunch.mcap",
     )
-    _program(score)
+    score.add_argument(
+        "program", metavar="F", type=Path, help="a program file, or the log of a run (.mcap)"
+    )
+    _world(score)
     run = adder.add(
         "run",
         "carry a program out",
@@ -239,7 +243,7 @@ def _looking(adder: _Adder) -> None:
     export = adder.add(
         "export",
         "write a program in another form",
-        "polaris-nl export lunch.polaris.json --to mermaid",
+        "polaris-nl export lunch.polaris.json --to isl",
         "exchange",
     )
     _program(export)
@@ -247,6 +251,14 @@ def _looking(adder: _Adder) -> None:
         "--to", choices=("mermaid", "dot", "isl"), default="mermaid", help="the form"
     )
     import_ = adder.add(
-        "import", "read a program in another form", "polaris-nl import lunch.isl", "exchange"
+        "import",
+        "read a program in another form",
+        "polaris-nl import lunch.isl --world care-home --program lunch.polaris.json",
+        "exchange",
     )
     import_.add_argument("file", metavar="FILE", type=Path, help="an ISL file")
+    _world(import_)
+    import_.add_argument(
+        "--program", metavar="F", type=Path,
+        help="the program file to make; without it, the program is printed",
+    )  # fmt: skip

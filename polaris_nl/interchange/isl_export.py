@@ -63,7 +63,7 @@ def _missing(automaton: Automaton) -> Iterator[str]:
     for checkpoint in automaton.checkpoints.values():
         name = checkpoint.name
         if checkpoint.id == START and (checkpoint.goals or checkpoint.action):
-            yield f"The start has goals, and ISL's init has none: {_all(checkpoint)}."
+            yield "The start has goals, and ISL's init has none; move them to a checkpoint."
         for goal in checkpoint.goals:
             for part in conjuncts(goal):
                 if not isinstance(part, Literal):
@@ -86,10 +86,6 @@ def _missing(automaton: Automaton) -> Iterator[str]:
             )
         for literal in transition.when:
             yield from _unsayable(where, literal.predicate, literal.args)
-
-
-def _all(checkpoint: Checkpoint) -> str:
-    return listed([str(x) for x in (checkpoint.action or (), *checkpoint.goals) if x])
 
 
 def _unsayable(where: str, head: str, args: Iterable[str]) -> Iterator[str]:
@@ -148,9 +144,7 @@ def _numbers(automaton: Automaton) -> dict[str, int]:
 # Parts
 
 
-def _guards(
-    automaton: Automaton, named: dict[str, str]
-) -> dict[tuple[Literal, ...], str]:
+def _guards(automaton: Automaton, named: dict[str, str]) -> dict[tuple[Literal, ...], str]:
     """The label of each conditional, in the order of the transitions."""
     found: dict[tuple[Literal, ...], str] = {}
     for transition in automaton.transitions.values():

@@ -27,7 +27,9 @@ def read_isl(path: Path) -> Isl:
     """
     try:
         if path.stat().st_size > MAX_BYTES:
-            raise ProgramError(f"An ISL file of more than {MAX_BYTES // 10**6} MB is refused.", path)
+            raise ProgramError(
+                f"An ISL file of more than {MAX_BYTES // 10**6} MB is refused.", path
+            )
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         reason = "it is not UTF-8 text" if isinstance(error, UnicodeDecodeError) else error.strerror
@@ -60,7 +62,7 @@ def automaton_of(isl: Isl) -> Automaton:
 
 
 def faults(isl: Isl, world: World) -> Iterator[FormatError]:
-    """What of an ISL text doesn't fit a world, each with its line: names, types, and guards that are actions."""
+    """What of an ISL text doesn't fit a world, with its line: names, types, guards that are actions."""
     if isl.domain != world.domain.name:
         yield FormatError(
             f"The program is for the domain {isl.domain}, but the world {world.name} is of "

@@ -128,7 +128,9 @@ class _Parser:
         token = self._next()
         if not (token.text.isascii() and token.text.isdecimal()):
             found = f"{token.text!r}" if token.text else "the end of the file"
-            raise FormatError(f"The number of {what} was expected, but {found} found.", line=token.line)
+            raise FormatError(
+                f"The number of {what} was expected, but {found} found.", line=token.line
+            )
         return int(token.text), token.line
 
     # Sections

@@ -53,7 +53,9 @@ def _name(automaton: Automaton, checkpoint: str) -> str:
 def _loops(automaton: Automaton) -> Iterator[str]:
     order = {checkpoint: place for place, checkpoint in enumerate(automaton.checkpoints)}
     parts = nx.strongly_connected_components(nx.DiGraph(automaton.graph))
-    for part in sorted((sorted(p, key=order.__getitem__) for p in parts), key=lambda p: order[p[0]]):
+    for part in sorted(
+        (sorted(p, key=order.__getitem__) for p in parts), key=lambda p: order[p[0]]
+    ):
         if len(part) > 1:
             names = listed([_name(automaton, c) for c in part])
             yield f"{names} come after one another in a loop."
