@@ -96,7 +96,7 @@ def _pddl(path: Path) -> _Checked:
     what = "a domain"
     if domain.uncommanded:
         acts, others = listed(domain.commanded), listed(domain.uncommanded)
-        what = f"a domain whose operators are the {acts}'s to carry out (type {others} is nobody to command)"
+        what = f"a domain in which type {acts} can be commanded and type {others} can't"
     return _of(what, check_domain(domain))
 
 

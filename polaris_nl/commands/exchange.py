@@ -6,7 +6,6 @@ import json
 from argparse import Namespace
 from pathlib import Path
 
-from polaris_nl.automaton.automaton import Automaton
 from polaris_nl.automaton.program import Program, program_json, write_program
 from polaris_nl.automaton.validation import validate
 from polaris_nl.commands.common import complain, opened, print_json, print_text, shown_path
@@ -16,7 +15,7 @@ from polaris_nl.interchange.isl_syntax import Isl
 from polaris_nl.interchange.properties import Property, properties
 from polaris_nl.model.data import shipped_worlds
 from polaris_nl.model.errors import FormatError, UsageError
-from polaris_nl.model.text import sentence
+from polaris_nl.model.text import listed
 from polaris_nl.model.world import World
 from polaris_nl.model.world_file import load_world
 from polaris_nl.render.glyphs import plain
@@ -70,23 +69,27 @@ def _import(arguments: Namespace) -> int:
         if arguments.program.exists():
             raise UsageError(f"{arguments.program} is there already; name another with --program.")
         write_program(program, arguments.program)
-    return _tell(arguments, program, properties(automaton), _said_of(isl, automaton, world))
+    problems = tuple(fault.text for fault in validate(automaton, world))
+    return _tell(arguments, program, properties(automaton), problems, _notes(isl, world))
 
 
-def _said_of(isl: Isl, automaton: Automaton, world: World) -> tuple[str, ...]:
-    """What doesn't come along, and what has to be mended before the program can be planned."""
-    problems = (fault.text for fault in validate(automaton, world) if fault.cause == "invalid")
-    people = ""
-    if world.domain.uncommanded:
-        kinds = " or ".join(world.domain.uncommanded)
-        people = f"The robot acts; what a {kinds} does, it waits for."
-    return (*notes(isl), *([people] if people else []), *problems)
+def _notes(isl: Isl, world: World) -> tuple[str, ...]:
+    """What doesn't come along, and who acts."""
+    if not world.domain.uncommanded:
+        return notes(isl)
+    acts, others = listed(world.domain.commanded), listed(world.domain.uncommanded)
+    return (*notes(isl), f"Type {acts} can be commanded, and type {others} can't.")
 
 
 def _tell(
-    arguments: Namespace, program: Program, shape: tuple[Property, ...], said: tuple[str, ...]
+    arguments: Namespace,
+    program: Program,
+    shape: tuple[Property, ...],
+    problems: tuple[str, ...],
+    said: tuple[str, ...],
 ) -> int:
-    against = [text for found in shape for text in found.against]
+    """Says what came of an import; 1 where the program has to be mended before it can be planned."""
+    fine = all(found.holds for found in shape) and not problems
     if arguments.json:
         print_json(
             {
@@ -94,24 +97,28 @@ def _tell(
                 "program": program_json(program),
                 "properties": {found.name: found.holds for found in shape},
                 "against": {found.name: list(found.against) for found in shape if not found.holds},
+                "problems": list(problems),
                 "notes": list(said),
                 "faults": [],
             }
         )
-        return 1 if against else 0
+        return 0 if fine else 1
     for note in said:
         complain(f"note: {plain(note)}")
     for found in shape:
         for text in found.against:
             complain(plain(f"not {found.name.replace('_', '-')}: {text}"))
+    for text in problems:
+        complain(plain(f"to be mended: {text}"))
     if arguments.program is None:
         print(json.dumps(program_json(program), indent=2, ensure_ascii=False))
     else:
         count = len(program.automaton.checkpoints) - 1
-        checkpoints = f"{count} checkpoint{'' if count == 1 else 's'}"
         shown = f"polaris-nl plan {shown_path(arguments.program)}"
-        print_text(sentence(f"{checkpoints}, saved; see the plan with: {shown}"))
-    return 1 if against else 0
+        print_text(
+            f"{count} checkpoint{'' if count == 1 else 's'} saved; see the plan with: {shown}"
+        )
+    return 0 if fine else 1
 
 
 def _world_of(isl: Isl) -> World:
