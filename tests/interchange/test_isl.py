@@ -102,7 +102,7 @@ def test_labels_guards_outcomes_and_actions_are_read(care_home: World) -> None:
         ("2: served", "1: served", 10, "two states 1"),
         ("[] 0 -> 1", "[] 0 -> 5", 12, "no state 5; there are: 0, 1, 2, 3, 4, 7"),
         ("guard=0 ", "guard=4 ", 13, "no guard 4"),
-        ("[] 0 -> 1;", "[] 0 -> 1", 13, "';' was expected"),
+        ("[] 0 -> 1;", "[] 0 -> 1", 13, "; was expected"),
         ("maintenance_goals", "maintenance_goal", 20, "Did you mean maintenance_goals?"),
         ("endoptions", "", 22, "end of the file"),
         ("endmodule", "endmodul", 17, "'endmodul' found"),
@@ -118,11 +118,8 @@ def test_what_is_no_isl_is_named_with_its_line(
     text = TRAY.replace(before, after, 1)
     with pytest.raises(FormatError) as error:
         parse_isl(text)
-    if reason == "';' was expected":
-        reason = "; was expected"
     assert reason in error.value.reason
-    # The states' list stands on the line before in the cases of its first members.
-    assert error.value.line in (line, line + 1 if line in (9,) else line)
+    assert error.value.line == line
 
 
 @pytest.mark.parametrize(
@@ -271,7 +268,7 @@ def programs(draw: st.DrawFn) -> Automaton:
 
 @given(programs())
 def test_a_program_comes_back_as_it_was(automaton: Automaton) -> None:
-    domain = load_domain()
+    domain = load_world("care-home").domain
     export = export_isl(automaton, domain)
     assert export.missing == ()
     back = automaton_of(parse_isl(export.text))
@@ -295,7 +292,3 @@ def without_names(automaton: Automaton) -> object:
     checkpoints = [(c.id, c.goals, c.action) for c in automaton.checkpoints.values()]
     transitions = [(t.source, t.target, t.when, t.on) for t in automaton.transitions.values()]
     return checkpoints, transitions
-
-
-def load_domain():  # type: ignore[no-untyped-def]
-    return load_world("care-home").domain
