@@ -106,6 +106,12 @@ def parse_domain(text: str, path: Path | None = None) -> Domain:
                 path,
                 section.line,
             )
+        elif section.head == ":durative-action":
+            raise DomainError(
+                "Operators that take time are not supported; make it an (:action ...).",
+                path,
+                section.line,
+            )
     domain = Domain(
         name=_word(name_node.items[1]),
         parents=parents,

@@ -2,12 +2,14 @@
 
 A domain that declares `object` as a type of its own (a thing to grasp) can't be handed to a planner
 as it is: there, every entity is an `object`. The type is called `item` on the way to the planner;
-    names of entities and operators stay as they are.
+names of entities and operators stay as they are. Nor can the planner read `(either ...)` but in the
+declaration of a predicate, so it is said there in other words.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import itertools
+from collections.abc import Iterable, Iterator, Sequence
 
 from polaris_nl.model.domain import OBJECT, Domain, Operator
 from polaris_nl.model.formula import (
@@ -38,8 +40,7 @@ def domain_text(domain: Domain, written: bool = False) -> str:
         domain: the domain.
         written: write it from its parts even where its source would do, as it has been added to.
     """
-    as_it_is = not domain.object_is_a_type and not domain.uncommanded
-    if domain.source and as_it_is and not written:
+    if domain.source and not written and not _needs_writing(domain):
         return domain.source
     types = " ".join(_type_line(domain, kind) for kind in domain.types)
     predicates = " ".join(
@@ -52,6 +53,39 @@ def domain_text(domain: Domain, written: bool = False) -> str:
         f"(define (domain {domain.name}) (:requirements :adl)\n(:types {types})\n"
         f"{constants}(:predicates {predicates})\n{operators})"
     )
+
+
+def _needs_writing(domain: Domain) -> bool:
+    """Whether the planner can't have the source: it says more than the parts do, or the planner can't read it.
+
+    Costs need values that worlds don't have; plans are as short as can be instead.
+    """
+    unions = any(
+        len(variable.types) > 1
+        for operator in domain.operators.values()
+        for variable in (*operator.parameters, *_quantified(operator.precondition),
+                         *_quantified(operator.effect))
+    )  # fmt: skip
+    costs = "(:functions" in domain.source.lower()
+    return domain.object_is_a_type or bool(domain.uncommanded) or unions or costs
+
+
+def _quantified(formula: Formula) -> Iterator[Variable]:
+    """The variables of the quantifiers in a formula."""
+    if isinstance(formula, And | Or):
+        for part in formula.parts:
+            yield from _quantified(part)
+    elif isinstance(formula, Not):
+        yield from _quantified(formula.part)
+    elif isinstance(formula, Imply):
+        yield from _quantified(formula.condition)
+        yield from _quantified(formula.conclusion)
+    elif isinstance(formula, When):
+        yield from _quantified(formula.condition)
+        yield from _quantified(formula.effect)
+    elif isinstance(formula, Quantified):
+        yield from formula.variables
+        yield from _quantified(formula.body)
 
 
 def problem_text(world: World, state: State, goals: Sequence[Formula]) -> str:
@@ -79,9 +113,36 @@ def formula_text(domain: Domain, formula: Formula) -> str:
     if isinstance(formula, When):
         return f"(when {_texts(domain, (formula.condition, formula.effect))})"
     if isinstance(formula, Quantified):
-        variables = _variables(domain, formula.variables)
-        return f"({formula.quantifier} ({variables}) {formula_text(domain, formula.body)})"
+        return _quantified_text(domain, formula)
     return str(formula)
+
+
+def _quantified_text(domain: Domain, formula: Quantified) -> str:
+    parts = [
+        f"({x.quantifier} ({_variables(domain, x.variables)}) {formula_text(domain, x.body)})"
+        for x in one_type_each(formula)
+    ]
+    if len(parts) == 1:
+        return parts[0]
+    return f"({'and' if formula.quantifier == 'forall' else 'or'} {' '.join(parts)})"
+
+
+def one_type_each(formula: Quantified) -> list[Quantified]:
+    """The same quantifier for each choice of types, where variables are of one of several.
+
+    All of a `forall` are to hold, and one of an `exists`.
+    """
+    return [
+        Quantified(
+            formula.quantifier,
+            tuple(
+                Variable(v.name, (kind,) if kind else ())
+                for v, kind in zip(formula.variables, kinds, strict=True)
+            ),
+            formula.body,
+        )
+        for kinds in itertools.product(*(v.types or ("",) for v in formula.variables))
+    ]
 
 
 def _texts(domain: Domain, formulas: Iterable[Formula]) -> str:
@@ -97,13 +158,30 @@ def _type_line(domain: Domain, kind: str) -> str:
 
 
 def _variables(domain: Domain, variables: Sequence[Variable]) -> str:
-    renamed = (Variable(v.name, tuple(planner_type(domain, t) for t in v.types)) for v in variables)
+    # Without a type of its own, a variable would be read with the next one's.
+    renamed = (
+        Variable(v.name, tuple(planner_type(domain, t) for t in v.types) or (OBJECT,))
+        for v in variables
+    )
     return " ".join(map(str, renamed))
 
 
 def _operator(domain: Domain, operator: Operator) -> str:
+    plain = [Variable(p.name, p.types if len(p.types) < 2 else ()) for p in operator.parameters]
+    kinds = " ".join(_one_of(domain, p) for p in operator.parameters if len(p.types) > 1)
+    precondition = formula_text(domain, operator.precondition)
+    if kinds:
+        precondition = f"(and {kinds} {precondition})"
     return (
-        f"(:action {operator.name} :parameters ({_variables(domain, operator.parameters)})"
-        f" :precondition {formula_text(domain, operator.precondition)}"
-        f" :effect {formula_text(domain, operator.effect)})"
+        f"(:action {operator.name} :parameters ({_variables(domain, plain)})"
+        f" :precondition {precondition} :effect {formula_text(domain, operator.effect)})"
     )
+
+
+def _one_of(domain: Domain, parameter: Variable) -> str:
+    """That a parameter is of one of its types, for a planner that knows no `(either ...)`."""
+    same = " ".join(
+        f"(exists (?one - {planner_type(domain, kind)}) (= ?one {parameter.name}))"
+        for kind in parameter.types
+    )
+    return f"(or {same})"

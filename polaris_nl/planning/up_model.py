@@ -10,7 +10,7 @@ from collections import OrderedDict
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from polaris_nl.model.domain import OBJECT, Action, Domain
+from polaris_nl.model.domain import OBJECT, Action
 from polaris_nl.model.formula import (
     And,
     Equal,
@@ -25,7 +25,7 @@ from polaris_nl.model.formula import (
 )
 from polaris_nl.model.state import State
 from polaris_nl.model.world import World
-from polaris_nl.planning.pddl_text import planner_type
+from polaris_nl.planning.pddl_text import one_type_each, planner_type
 
 
 def up_problem(world: World, state: State, goals: Sequence[Formula]) -> Any:
@@ -67,7 +67,6 @@ class _Builder:
         # The global one: parts of unified-planning's validator use no other.
         self._environment = get_environment()
         self._em = self._environment.expression_manager
-        self._unions = _unions(world.domain)
         self._objects: dict[str, Any] = {}
         self._fluents: dict[str, Any] = {}
 
@@ -92,6 +91,9 @@ class _Builder:
             names = {p.name: action.parameter(p.name) for p in operator.parameters}
             bound = {k: self._em.ParameterExp(v) for k, v in names.items()}
             action.add_precondition(self._expression(operator.precondition, bound))
+            for parameter in operator.parameters:
+                if len(parameter.types) > 1:
+                    action.add_precondition(self._one_of(parameter, bound[parameter.name]))
             self._effects(action, operator.effect, bound, None, ())
             problem.add_action(action)
         for goal in goals:
@@ -114,9 +116,10 @@ class _Builder:
                 action, effect.effect, bound, self._expression(effect.condition, bound), forall
             )
         elif isinstance(effect, Quantified):
-            variables = [self._variable(v) for v in effect.variables]
-            inner = {**bound, **{v.name: self._em.VariableExp(v) for v in variables}}
-            self._effects(action, effect.body, inner, condition, (*forall, *variables))
+            for one in one_type_each(effect):
+                variables = [self._variable(v) for v in one.variables]
+                inner = {**bound, **{v.name: self._em.VariableExp(v) for v in variables}}
+                self._effects(action, one.body, inner, condition, (*forall, *variables))
         elif isinstance(effect, Literal):
             fluent = self._expression(effect.atom, bound)
             holds = True if condition is None else condition
@@ -138,12 +141,21 @@ class _Builder:
             condition = self._expression(formula.condition, bound)
             return em.Implies(condition, self._expression(formula.conclusion, bound))
         if isinstance(formula, Quantified):
-            variables = [self._variable(v) for v in formula.variables]
-            inner = {**bound, **{v.name: em.VariableExp(v) for v in variables}}
-            make = em.Forall if formula.quantifier == "forall" else em.Exists
-            return make(self._expression(formula.body, inner), *variables)
+            parts = [self._quantified(one, bound) for one in one_type_each(formula)]
+            return em.And(parts) if formula.quantifier == "forall" else em.Or(parts)
         assert isinstance(formula, Equal)
         return em.Equals(self._term(formula.left, bound), self._term(formula.right, bound))
+
+    def _quantified(self, formula: Quantified, bound: dict[str, Any]) -> Any:
+        variables = [self._variable(v) for v in formula.variables]
+        inner = {**bound, **{v.name: self._em.VariableExp(v) for v in variables}}
+        make = self._em.Forall if formula.quantifier == "forall" else self._em.Exists
+        return make(self._expression(formula.body, inner), *variables)
+
+    def _one_of(self, parameter: Variable, term: Any) -> Any:
+        """That a term is one of the entities that fit a parameter."""
+        fitting = [e.name for e in self._world.of_type(*parameter.types)]
+        return self._em.Or([self._em.Equals(term, self._term(name, {})) for name in fitting])
 
     def _term(self, name: str, bound: dict[str, Any]) -> Any:
         return bound[name] if name in bound else self._em.ObjectExp(self._objects[name])
@@ -152,21 +164,15 @@ class _Builder:
         return self._model.Variable(variable.name, self._type(variable), self._environment)
 
     def _type(self, variable: Variable) -> Any:
-        if len(variable.types) > 1:
-            return self._named(_union_name(variable.types))
-        return self._named(
-            planner_type(self._world.domain, variable.types[0] if variable.types else OBJECT)
-        )
+        """A variable's type; unified-planning has no `(either ...)`, so that is anything there."""
+        kind = variable.types[0] if len(variable.types) == 1 else None
+        return self._named(OBJECT if kind is None else planner_type(self._world.domain, kind))
 
     def _named(self, name: str) -> Any:
-        """A user type below its parent; a union of types is the parent of its members."""
-        parent = self._unions.get(name)
-        if parent is None:
-            declared = self._world.domain.parents.get(name, ())
-            parent = declared[0] if declared and declared[0] != OBJECT else None
-        if parent is None and name != OBJECT:
-            parent = OBJECT
-        above = self._named(parent) if parent is not None else None
+        """A user type below its parent."""
+        declared = self._world.domain.parents.get(name, ())
+        parent = declared[0] if declared and declared[0] not in (OBJECT, name) else OBJECT
+        above = self._named(parent) if name != OBJECT else None
         return self._environment.type_manager.UserType(f"a {name}", above)
 
 
@@ -178,19 +184,3 @@ def _is(predicate: str) -> str:
 
 def _do(operator: str) -> str:
     return f"do {operator}"
-
-
-def _union_name(types: Sequence[str]) -> str:
-    return "-or-".join(sorted(types))
-
-
-def _unions(domain: Domain) -> dict[str, str]:
-    """For each member of an `(either ...)`, the name of the union; unified-planning has no such types."""
-    found: dict[str, str] = {}
-    things: list[Sequence[Variable]] = [p.parameters for p in domain.predicates.values()]
-    things += [o.parameters for o in domain.operators.values()]
-    for parameters in things:
-        for parameter in parameters:
-            if len(parameter.types) > 1:
-                found.update(dict.fromkeys(parameter.types, _union_name(parameter.types)))
-    return found
