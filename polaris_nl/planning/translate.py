@@ -11,15 +11,23 @@ import importlib
 import io
 import pkgutil
 import threading
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from types import ModuleType
 from typing import Any
 
 from polaris_nl.model.errors import PlanningError
+from polaris_nl.planning.budget import never
+from polaris_nl.planning.interrupt import limited
 
 _LOCK = threading.RLock()
 _PARTS: dict[str, ModuleType] = {}
+LIMIT_S = 10.0
+"""How long one translation may take."""
+_TOO_LONG = (
+    "There are too many ways to combine the things that this may need; ask for less at once, or use a "
+    "smaller world."
+)
 END = "the end"
 """The name of actions that are no robot's; no PDDL file can have one that is called so."""
 
@@ -58,15 +66,23 @@ class Sas:
     operators: Sequence[SasOperator] = field(repr=False)
 
 
-def translate(domain: str, problem: str) -> Task:
+def translate(domain: str, problem: str, cancelled: Callable[[], bool] = never) -> Task:
     """Grounds a problem.
 
+    Args:
+        domain: PDDL text.
+        problem: PDDL text.
+        cancelled: asked now and then; True ends the work.
+
     Raises:
-        PlanningError: the translator doesn't support something in the domain; it is named.
+        PlanningError: the translator doesn't support something in the domain, which is named, or takes
+            too long.
+        Cancelled: `cancelled` said so.
     """
     with _LOCK:
         parts = _translator()
-        sas = _grounded(parts, _parse(parts, domain, problem))
+        task = _parse(parts, domain, problem)
+        sas = limited(lambda: _grounded(parts, task), LIMIT_S, cancelled, _TOO_LONG)
         if _is_unsolvable(sas):
             return Task("")
         out = io.StringIO()
@@ -74,14 +90,18 @@ def translate(domain: str, problem: str) -> Task:
         return Task(out.getvalue(), plain=_is_plain(sas))
 
 
-def translate_without_goals(domain: str, problem: str) -> Sas | None:
+def translate_without_goals(
+    domain: str, problem: str, cancelled: Callable[[], bool] = never
+) -> Sas | None:
     """Grounds a problem whose goals aren't known yet.
 
     Returns:
         The problem, or None where it needs axioms or conditional effects.
 
     Raises:
-        PlanningError: the translator doesn't support something in the domain; it is named.
+        PlanningError: the translator doesn't support something in the domain, which is named, or takes
+            too long.
+        Cancelled: `cancelled` said so.
     """
     with _LOCK:
         parts = _translator()
@@ -97,7 +117,7 @@ def translate_without_goals(domain: str, problem: str) -> Sas | None:
         options = parts["options"].get_options()
         options.filter_unimportant_vars = False
         try:
-            sas = _grounded(parts, task)
+            sas = limited(lambda: _grounded(parts, task), LIMIT_S, cancelled, _TOO_LONG)
         finally:
             options.filter_unimportant_vars = True
         if not _is_plain(sas) or sas.metric:
