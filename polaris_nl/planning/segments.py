@@ -15,7 +15,7 @@ from polaris_nl.model.formula import Formula, Literal
 from polaris_nl.model.state import Mutexes, State
 from polaris_nl.model.world import World
 from polaris_nl.planning.budget import never
-from polaris_nl.planning.interrupt import Cancelled
+from polaris_nl.planning.grounding import Cancelled
 from polaris_nl.planning.memory import Memory
 from polaris_nl.planning.projection import Projection
 from polaris_nl.planning.result import Step
