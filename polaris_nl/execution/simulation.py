@@ -126,6 +126,11 @@ class SimulatedRobot:
 
     # The robot protocol
 
+    def missing(self, actions: Iterable[Action]) -> tuple[str, ...]:
+        """The operators that its world doesn't have."""
+        named = dict.fromkeys(action.operator for action in actions)
+        return tuple(name for name in named if name not in self._world.domain.operators)
+
     def advance(self, now: float) -> None:
         """Lets time pass: faults strike, the robot moves on, people act."""
         self._now = now
