@@ -11,6 +11,7 @@ from polaris_nl.execution.backend import Command, SendGoal
 from polaris_nl.execution.clock import VirtualClock
 from polaris_nl.execution.events import Event
 from polaris_nl.execution.faults import Fault
+from polaris_nl.execution.replanner import InlineReplanner
 from polaris_nl.execution.runner import RunResult, run
 from polaris_nl.execution.settings import RunSettings
 from polaris_nl.execution.simulation import SimulatedRobot, SimulationSettings
@@ -125,6 +126,7 @@ def carry_out(
     commands: Commands = lambda seconds: (),
     seed: int = 0,
     human_s: tuple[float, float] = (1.0, 3.0),
+    replans: bool = True,
     **settings: float | None,
 ) -> Told:
     """Runs a case in virtual time to its end."""
@@ -139,5 +141,6 @@ def carry_out(
         confirmed=True,
         sink=events.append,
         commands=lambda: commands(clock.now() - T0),
+        replanner=InlineReplanner(case.planner.segment) if replans else None,
     )
     return Told(result, robot, events)
