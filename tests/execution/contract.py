@@ -177,6 +177,11 @@ def check(scenario: Scenario, ran: Ran) -> None:
     assert set(scenario.shows) <= kinds
     assert kinds.isdisjoint(scenario.hides)
     _check_log(scenario, ran)
+    check_always(ran)
+
+
+def check_always(ran: Ran) -> None:
+    """Checks what holds whatever goes wrong: stillness after the end, and nothing is done twice."""
     _check_stillness(ran)
     _check_nothing_again(ran)
 

@@ -9,7 +9,7 @@ from typing import TypeVar
 from polaris_nl.automaton.automaton import START, Automaton, Checkpoint, Transition
 from polaris_nl.execution.backend import Command, SendGoal
 from polaris_nl.execution.clock import VirtualClock
-from polaris_nl.execution.events import Event
+from polaris_nl.execution.events import Event, StateChanged
 from polaris_nl.execution.faults import Fault
 from polaris_nl.execution.replanner import InlineReplanner
 from polaris_nl.execution.runner import RunResult, run
@@ -72,6 +72,10 @@ class Told:
 
     def of(self, kind: type[E]) -> list[E]:
         return [e for e in self.events if isinstance(e, kind)]
+
+    @property
+    def phases(self) -> list[str]:
+        return [e.after for e in self.of(StateChanged)]
 
     def one(self, kind: type[E]) -> E:
         (found,) = self.of(kind)
