@@ -7,6 +7,7 @@ import sys
 import threading
 from argparse import Namespace
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 
 from polaris_nl.automaton.automaton import Automaton
 from polaris_nl.commands.common import (
@@ -26,7 +27,7 @@ from polaris_nl.model.errors import RunError, UsageError, did_you_mean
 from polaris_nl.model.world import World
 from polaris_nl.render.glyphs import glyphs_for
 from polaris_nl.render.log import event_rows
-from polaris_nl.runs import RunOrder, run_simulated
+from polaris_nl.runs import RunOrder, resumable, run_simulated
 from polaris_nl.session import Session
 
 NONE = "none"
@@ -48,6 +49,9 @@ def run(arguments: Namespace) -> int:
         order = RunOrder(
             program.automaton, plan, session.planner, people, arguments.live, arguments.log
         )
+        if arguments.resume is not None:
+            point = resumable(arguments.resume, program.automaton, plan, session.planner)
+            order = replace(order, resume=point)
         commands = (
             Keyboard(session.understanding, program.automaton).commands if arguments.live else tuple
         )
