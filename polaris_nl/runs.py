@@ -113,7 +113,7 @@ def run_on(
                     sink=sink,
                     commands=commands,
                     replanner=replanner,
-                    resume=order.resume.state if order.resume else None,
+                    resume=order.resume,
                 )
             finally:
                 robot.close()
@@ -151,6 +151,7 @@ def run_simulated(
             sink=sink,
             start=now,
             state=order.resume.beliefs if order.resume else None,
+            acted=order.resume.acted if order.resume else (),
         )
 
     real = RealClock()
