@@ -182,6 +182,18 @@ def test_score_counts_objectives(command: Command, tmp_path: Path) -> None:
     assert "2 human actions at the least for all objectives, the same." in " ".join(text.split())
 
 
+def test_a_run_that_is_refused_leaves_no_log(command: Command, tmp_path: Path) -> None:
+    empty = tmp_path / "empty.polaris.json"
+    start = {"id": "c0", "name": "start", "goals": []}
+    program = {"schema": "polaris-program/1", "domain": "caregiving", "world": "care-home",
+               "checkpoints": [start], "transitions": []}  # fmt: skip
+    empty.write_text(json.dumps(program))
+    log = tmp_path / "none.mcap"
+    refused = command("run", empty, "--log", log)
+    assert (refused.code, log.exists()) == (1, False)
+    assert "nothing to run" in one_sentence(refused.err)
+
+
 def test_score_of_a_log_counts_what_its_run_met(command: Command, tmp_path: Path) -> None:
     path, log = tmp_path / "t.json", tmp_path / "t.mcap"
     for sentence in TIDY:

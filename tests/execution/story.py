@@ -14,7 +14,8 @@ from polaris_nl.execution.faults import Fault
 from polaris_nl.execution.replanner import InlineReplanner
 from polaris_nl.execution.runner import RunResult, run
 from polaris_nl.execution.settings import RunSettings
-from polaris_nl.execution.simulation import SimulatedRobot, SimulationSettings
+from polaris_nl.execution.simulation import SimulatedRobot
+from polaris_nl.execution.simulation_settings import SimulationSettings
 from polaris_nl.execution.state import HumanCommand, RunPlan
 from polaris_nl.model.formula import Literal, parse_formula
 from polaris_nl.model.world import World
