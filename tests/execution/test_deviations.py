@@ -125,6 +125,7 @@ def test_the_forgotten_wait_halts_with_expected_beside_observed(hasty_dishes: Ca
     assert (halt.expected, halt.observed) == (["(at cup countertop)"], ["(at cup drying-rack)"])
     assert told.result.reason == (
         "I expected that the cup is on the countertop, but I see that the cup is on the drying rack."
+        " Put that right and resume the run, or let the program wait until the cup is on the drying rack."
     )
 
 
