@@ -118,7 +118,9 @@ def _skip(work: Work, count: int) -> None:
         if work.sees(x)
     )
     words = [work.run.wording.action(a) for a in skipped]
-    what = listed(words) if count <= _NAMED else f"{words[0]} and {count - 1} more"
+    what = listed(words)
+    if count > _NAMED:
+        what = f"{words[0]}, nor do the {count - 1} steps after that"
     work.events.append(
         Skipped(
             time=work.now,

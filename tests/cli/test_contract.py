@@ -162,6 +162,17 @@ def test_a_run_that_halts_ends_with_1(command: Command, lunch: Path, tmp_path: P
     assert "acknowledged" in result.json["reason"]
 
 
+def test_a_run_that_halts_says_how_it_goes_on_and_so_it_does(
+    command: Command, lunch: Path, tmp_path: Path
+) -> None:
+    log = tmp_path / "halted.mcap"
+    halted = " ".join(command("run", lunch, "--people", "none", "--log", log).out.split())
+    _, _, offered = halted.partition("it goes on with: polaris-nl ")
+    result = command(*offered.split(), "--log", tmp_path / "rest.mcap", "--json")
+    assert (result.code, result.json["outcome"]) == (0, "done")
+    assert result.json["checkpoints"] == ["alerted", "fetched", "home"]
+
+
 def test_score_counts_objectives(command: Command, tmp_path: Path) -> None:
     path = tmp_path / "t.json"
     for sentence in TIDY:
