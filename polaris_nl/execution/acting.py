@@ -100,9 +100,7 @@ def _saved(work: Work, literals: tuple[Literal, ...]) -> int:
     """How many actions needn't be done, since what they are for is so already."""
     done = work.state.done_actions
     rest = work.state.actions[done:]
-    segment = work.run.plan.segments[work.state.segment]
-    goals = tuple(x for x in segment.goals if x not in work.state.served)
-    saved = seen_shortcut(work.run.simulator, work.inputs.observation, rest, goals)
+    saved = seen_shortcut(work.run.simulator, work.inputs.observation, rest, work.wanted)
     so_already = bool(literals) and all(map(work.sees, literals))
     return max(saved, int(so_already))
 

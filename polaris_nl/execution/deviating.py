@@ -86,11 +86,9 @@ def _ask(work: Work, missing: tuple[Literal, ...]) -> None:
     )
     if not settled or spent:
         return
-    segment = work.run.plan.segments[work.state.segment]
-    goals = tuple(x for x in segment.goals if x not in work.state.served)
     number = work.state.requests + 1
     work.note(
-        request=PlanRequest(number, state, goals),
+        request=PlanRequest(number, state, work.wanted),
         requests=number,
         replans=work.state.replans + 1,
     )
@@ -101,6 +99,8 @@ def _taken_up(work: Work, answer: PlanAnswer) -> bool:
     request = work.state.request
     if request is None or request.number != answer.number or answer.actions is None:
         return False
+    if work.insisted is not None and work.insisted not in answer.actions:
+        return False  # The same end by another way isn't what was asked for.
     if not _still_works(work, State(work.inputs.observation.state.facts), answer, request):
         return False
     old = work.state.actions[work.state.done_actions :]

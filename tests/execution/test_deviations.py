@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from polaris_nl.automaton.automaton import START, Automaton, Checkpoint, Transition
+from polaris_nl.automaton.program import parse_action
 from polaris_nl.execution.events import (
     CheckpointReached,
     Deviated,
@@ -81,6 +83,30 @@ def test_what_the_robot_plans_anew_on_the_way_to_a_goal_is_told(put_away: Case) 
     new = [e for e in told.of(Replanned) if not e.segment]
     assert [e.before for e in new] == [["(put-in cup cupboard)"]]
     assert "(open-container cupboard)" in new[0].after
+
+
+@pytest.fixture
+def insisted(care: Planner) -> Case:
+    """A program that says how: the tray is to be put on the table."""
+    step = Checkpoint("c1", "served", (), parse_action("(place tray table)"))
+    automaton = Automaton().with_checkpoint(step).with_transition(Transition("t1", START, "c1"))
+    plan = care.compile(automaton)
+    assert plan.status == "ok"
+    return Case(automaton, plan, care)
+
+
+def test_an_action_that_is_insisted_on_is_done_with_all_that_it_takes(insisted: Case) -> None:
+    told = carry_out(insisted)
+    assert told.result.outcome == "done"
+    assert told.robot.sent == [str(a) for a in insisted.plan.segments["c1"].actions]
+    assert told.robot.sent[-1] == "(place tray table)"
+
+
+def test_an_action_that_is_insisted_on_is_part_of_every_new_plan(insisted: Case) -> None:
+    told = carry_out(insisted, moved(5.0, "(at tray dining-table)"))
+    assert told.result.outcome == "done"
+    assert "(place tray table)" in told.one(Replanned).after
+    assert told.robot.sent[-1] == "(place tray table)"
 
 
 # People who help
