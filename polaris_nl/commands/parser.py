@@ -163,6 +163,10 @@ def _planning(adder: _Adder) -> None:
     )  # fmt: skip
     run.add_argument("--log", metavar="OUT.mcap", type=Path, help="where to write the log")
     run.add_argument(
+        "--resume", metavar="LOG.mcap", type=Path,
+        help="go on where the run in this log was interrupted; nothing that is done is done again",
+    )  # fmt: skip
+    run.add_argument(
         "--people", metavar="ACTION", action="append",
         help="what simulated people prefer to do, by the names in the world file; none: they do nothing",
     )  # fmt: skip
@@ -227,6 +231,13 @@ def _looking(adder: _Adder) -> None:
     adder.add(
         "worlds", "list the worlds that ship with Polaris NL", "polaris-nl worlds", "catalogue"
     )
+    durations = adder.add(
+        "durations",
+        "show how long actions took, which later plans take into account",
+        "polaris-nl durations --world care-home\n  polaris-nl durations --world care-home --reset",
+    )
+    _world(durations, required=True)
+    durations.add_argument("--reset", action="store_true", help="forget what was learned")
     check = adder.add(
         "check", "check domain, world, grammar and program files", "polaris-nl check my-world.yaml"
     )

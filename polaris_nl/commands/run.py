@@ -7,6 +7,7 @@ import sys
 import threading
 from argparse import Namespace
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 
 from polaris_nl.automaton.automaton import Automaton
 from polaris_nl.commands.common import (
@@ -26,7 +27,7 @@ from polaris_nl.model.errors import RunError, UsageError, did_you_mean
 from polaris_nl.model.world import World
 from polaris_nl.render.glyphs import glyphs_for
 from polaris_nl.render.log import event_rows
-from polaris_nl.runs import RunOrder, run_simulated
+from polaris_nl.runs import RunOrder, resumable, run_simulated
 from polaris_nl.session import Session
 
 NONE = "none"
@@ -48,6 +49,9 @@ def run(arguments: Namespace) -> int:
         order = RunOrder(
             program.automaton, plan, session.planner, people, arguments.live, arguments.log
         )
+        if arguments.resume is not None:
+            point = resumable(arguments.resume, program.automaton, plan, session.planner)
+            order = replace(order, resume=point)
         commands = (
             Keyboard(session.understanding, program.automaton).commands if arguments.live else tuple
         )
@@ -74,6 +78,9 @@ def run(arguments: Namespace) -> int:
         if met:
             print_text(f"Objectives: {len(done)} of {len(met)} ({', '.join(done) or 'none'}).")
         print_text(f"The log can be read with: polaris-nl review {shown_path(report.log)}")
+        if result.outcome != "done":
+            again = f"{shown_path(arguments.program)} --resume {shown_path(report.log)}"
+            print_text(f"When things are put right, it goes on with: polaris-nl run {again}")
     return 0 if result.outcome == "done" and not report.failure else 1
 
 
@@ -113,19 +120,21 @@ class Keyboard:
     def __init__(self, understanding: Understanding, automaton: Automaton) -> None:
         self._understanding = understanding
         self._automaton = automaton
-        self._lines: queue.SimpleQueue[str] = queue.SimpleQueue()
+        self._commands: queue.SimpleQueue[HumanCommand] = queue.SimpleQueue()
         threading.Thread(target=self._read, name="keyboard", daemon=True).start()
 
     def _read(self) -> None:
+        # Understanding takes its time, above all at first, and the run mustn't wait for it.
+        self._command("stop")
         for line in sys.stdin:
-            self._lines.put(line)
+            command = self._command(line) if line.strip() else None
+            if command is not None:
+                self._commands.put(command)
 
     def commands(self) -> Iterable[HumanCommand]:
         """The commands typed since the last call."""
-        while not self._lines.empty():
-            command = self._command(self._lines.get())
-            if command is not None:
-                yield command
+        while not self._commands.empty():
+            yield self._commands.get()
 
     def _command(self, line: str) -> HumanCommand | None:
         command = command_in(line, self._understanding, self._automaton)

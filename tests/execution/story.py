@@ -9,10 +9,14 @@ from typing import TypeVar
 from polaris_nl.automaton.automaton import START, Automaton, Checkpoint, Transition
 from polaris_nl.execution.backend import Command, SendGoal
 from polaris_nl.execution.clock import VirtualClock
-from polaris_nl.execution.events import Event
+from polaris_nl.execution.events import Event, StateChanged
+from polaris_nl.execution.faults import Fault
+from polaris_nl.execution.goals import GoalLimits
+from polaris_nl.execution.replanner import InlineReplanner
 from polaris_nl.execution.runner import RunResult, run
 from polaris_nl.execution.settings import RunSettings
-from polaris_nl.execution.simulation import Fault, SimulatedRobot, SimulationSettings
+from polaris_nl.execution.simulation import SimulatedRobot
+from polaris_nl.execution.simulation_settings import SimulationSettings
 from polaris_nl.execution.state import HumanCommand, RunPlan
 from polaris_nl.model.formula import Literal, parse_formula
 from polaris_nl.model.world import World
@@ -71,6 +75,10 @@ class Told:
     def of(self, kind: type[E]) -> list[E]:
         return [e for e in self.events if isinstance(e, kind)]
 
+    @property
+    def phases(self) -> list[str]:
+        return [e.after for e in self.of(StateChanged)]
+
     def one(self, kind: type[E]) -> E:
         (found,) = self.of(kind)
         return found
@@ -124,12 +132,14 @@ def carry_out(
     commands: Commands = lambda seconds: (),
     seed: int = 0,
     human_s: tuple[float, float] = (1.0, 3.0),
+    replans: bool = True,
+    limits: GoalLimits = GoalLimits(),
     **settings: float | None,
 ) -> Told:
     """Runs a case in virtual time to its end."""
     events: list[Event] = []
     clock = BoundedClock(T0)
-    how = SimulationSettings(people=people, seed=seed, human_s=human_s)
+    how = SimulationSettings(people=people, seed=seed, human_s=human_s, limits=limits)
     robot = SpiedRobot(case, settings=how, faults=faults, sink=events.append)
     result = run(
         case.run_plan(**settings),
@@ -138,5 +148,6 @@ def carry_out(
         confirmed=True,
         sink=events.append,
         commands=lambda: commands(clock.now() - T0),
+        replanner=InlineReplanner(case.planner.segment) if replans else None,
     )
     return Told(result, robot, events)
