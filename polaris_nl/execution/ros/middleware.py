@@ -14,7 +14,7 @@ from typing import Any
 from polaris_nl.model.errors import RunError
 
 INSTALL = 'pip install "polaris-nl[ros]"'
-INTERFACES = "scripts/build-interfaces"
+INTERFACES = "python scripts/build_interfaces.py (in a checkout: make robot)"
 """What builds the interface packages that no wheel brings."""
 OPTIONAL = ("control_msgs", "nav2_msgs", "tf2_msgs", "visualization_msgs")
 
