@@ -10,9 +10,10 @@ from polaris_nl.automaton.automaton import START, Automaton, Checkpoint, Transit
 from polaris_nl.execution.backend import Command, SendGoal
 from polaris_nl.execution.clock import VirtualClock
 from polaris_nl.execution.events import Event
+from polaris_nl.execution.faults import Fault
 from polaris_nl.execution.runner import RunResult, run
 from polaris_nl.execution.settings import RunSettings
-from polaris_nl.execution.simulation import Fault, SimulatedRobot, SimulationSettings
+from polaris_nl.execution.simulation import SimulatedRobot, SimulationSettings
 from polaris_nl.execution.state import HumanCommand, RunPlan
 from polaris_nl.model.formula import Literal, parse_formula
 from polaris_nl.model.world import World

@@ -15,8 +15,8 @@ from polaris_nl.execution.events import (
     RobotReported,
     TransitionTaken,
 )
+from polaris_nl.execution.faults import Fault
 from polaris_nl.execution.settings import RunSettings
-from polaris_nl.execution.simulation import Fault
 from polaris_nl.execution.state import HumanCommand
 from polaris_nl.planning.planner import Planner
 from tests.execution.story import T0, Case, Commands, Told, carry_out, case, literal, literals
