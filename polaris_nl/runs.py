@@ -78,7 +78,7 @@ def run_simulated(
     path = order.log or new_log_path(world.name)
     wording = planner.wording
     plan = RunPlan(order.automaton, order.plan, world, wording, order.settings)
-    with LogWriter(path, _attachments(order)) as log:
+    with LogWriter(path, attachments(order)) as log:
 
         def sink(event: Event) -> None:
             log.write(event)
@@ -111,7 +111,8 @@ def run_simulated(
     return RunReport(result, path, log.failure)
 
 
-def _attachments(order: RunOrder) -> Mapping[str, str]:
+def attachments(order: RunOrder) -> Mapping[str, str]:
+    """What makes the log of a run explain itself: program, domain and world."""
     world = order.planner.world
     program = program_json(Program(order.automaton, world.domain.name, world.name))
     return attachments_of(program, world.domain.source, world.source)

@@ -64,6 +64,15 @@ def installation(environment: Mapping[str, str] = os.environ) -> Installation:
     return Installation(sourced, distribution if sourced else "jazzy", place)
 
 
+def stay_on_this_machine() -> None:
+    """Keeps ROS to the loopback device unless the environment says otherwise; to be called before the start.
+
+    A robot is on the network, and reached as the environment is set up for it; what is simulated runs here.
+    """
+    if not {"ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_LOCALHOST_ONLY"} & os.environ.keys():
+        os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
+
+
 def load_rclpy() -> ModuleType:
     """The rclpy module.
 

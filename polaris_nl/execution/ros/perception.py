@@ -198,8 +198,8 @@ def _values(memory: Memory, percepts: Percepts, now: float, scene: Scene) -> Ite
     told: set[Variable] = set()
     if fresh(percepts.detected_at):
         for atom, word in percepts.detected.items():
-            if not fresh(word.stamp):
-                continue
+            if atom == HAND or not fresh(word.stamp):
+                continue  # Whether the hand is empty follows from what it holds.
             if word.literal.positive:
                 told.add(variable_of(atom))
                 yield variable_of(atom), atom, word.stamp, "detector"

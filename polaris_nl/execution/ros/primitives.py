@@ -8,6 +8,7 @@ where its joints are). All end by themselves, by their deadlines.
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Awaitable, Callable, Mapping
 from typing import Any, Protocol
 
@@ -24,6 +25,8 @@ JOINT_POSE = (
 """The order of `joint_pose_cmd`, whose last two values move the base."""
 POINT_S = 3
 """How long a movement of the arm is given on its way, in seconds."""
+GOAL_GAP_S = 0.3
+"""The driver rejects a movement of the arm that comes sooner after the last one."""
 DRIVE_PERIOD_S = 0.1
 OVER_ITEM_M = 0.05
 """How high above where a thing is seen the fingers go."""
@@ -80,6 +83,7 @@ class Primitives:
         self._senses = senses
         self._profile = driver.profile
         self._requests = 0
+        self._moved_arm = 0.0
         self._code: Mapping[str, Callable[[Mapping[str, str]], Awaitable[None]]] = {
             "navigate": self._navigate,
             "reach": self._reach,
@@ -205,6 +209,10 @@ class Primitives:
             point.positions = [float(v) for v in joints.values()]
             point.time_from_start.sec = POINT_S
             goal.trajectory.points = [point]
+            await until(
+                lambda: time.monotonic() - self._moved_arm > GOAL_GAP_S, 1.0, "moving its arm"
+            )
+            self._moved_arm = time.monotonic()
             await self._driver.pursue("trajectory", goal, seconds, "moving its arm")
         else:
             await self._stream(joints)

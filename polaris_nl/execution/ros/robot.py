@@ -29,6 +29,7 @@ from polaris_nl.execution.clock import Clock
 from polaris_nl.execution.goals import PlanTo
 from polaris_nl.execution.ros.driver import Driver
 from polaris_nl.execution.ros.knowledge import facts, sightings, unknown
+from polaris_nl.execution.ros.middleware import stay_on_this_machine
 from polaris_nl.execution.ros.mission import Mission
 from polaris_nl.execution.ros.owner import Owner, until
 from polaris_nl.execution.ros.perception import Scene, perceive, remembered
@@ -96,6 +97,8 @@ class StretchRobot:
         self._still = False
         self._looked = self._stilled = self._counted = 0.0
         self._planner = ThreadPoolExecutor(max_workers=1, thread_name_prefix="robot-planning")
+        if profile.simulated:
+            stay_on_this_machine()
         self._owner = Owner("polaris_nl", self._driver.set_up, self._watch, self._withdraw)
         try:
             self._owner.do(self._ready(), profile.times.ready + 1.0)

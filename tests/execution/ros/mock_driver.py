@@ -242,7 +242,9 @@ class MockDriver(Node):
             thing = literal.args[-1] if literal.predicate == "has" else literal.args[0]
             facts = {f for f in facts if not (f.predicate in places and thing in f.args)}
         if literal.predicate == "person-in":
-            facts = {f for f in facts if f.args[:1] != literal.args[:1] or f.predicate != "person-in"}
+            facts = {
+                f for f in facts if f.args[:1] != literal.args[:1] or f.predicate != "person-in"
+            }
         facts.add(literal) if literal.positive else facts.discard(literal.atom)
         self.state = State(frozenset(facts))
 
@@ -308,7 +310,9 @@ class MockDriver(Node):
             handle.abort()
             return result
         trajectory = handle.request.trajectory
-        self.joints.update(zip(trajectory.joint_names, trajectory.points[-1].positions, strict=True))
+        self.joints.update(
+            zip(trajectory.joint_names, trajectory.points[-1].positions, strict=True)
+        )
         handle.succeed()
         return result
 
