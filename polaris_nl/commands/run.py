@@ -24,6 +24,7 @@ from polaris_nl.execution.runner import objectives_met
 from polaris_nl.execution.state import HumanCommand
 from polaris_nl.language.understanding import Understanding
 from polaris_nl.model.errors import RunError, UsageError, did_you_mean
+from polaris_nl.model.text import capital
 from polaris_nl.model.world import World
 from polaris_nl.render.glyphs import glyphs_for
 from polaris_nl.render.log import event_rows
@@ -88,9 +89,7 @@ def agreed(session: Session, profile: Profile) -> bool:
         RunError: nobody can be asked, or the answer isn't a yes.
     """
     print(session.say("run it").say, file=sys.stderr)
-    print(
-        f"{profile.title.capitalize()} will move. Yes or no? ", end="", file=sys.stderr, flush=True
-    )
+    print(f"{capital(profile.title)} will move. Yes or no? ", end="", file=sys.stderr, flush=True)
     answer = sys.stdin.readline()
     if not answer:
         raise RunError(

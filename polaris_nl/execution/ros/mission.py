@@ -99,28 +99,39 @@ class Mission:
                 self._end("succeeded" if len(found.way) == 1 else "failed", _UNSEEN)
                 return
             self._check_skill(found.action)
-            wanted = self._effects(found.action, state)
             try:
-                await self._act(found.action, primitives, seen)
+                achieved = await self._act(found.action, primitives, seen)
             except _Moved:
                 done = None
                 continue
             done = found.action
-            await _patiently(lambda: all(map(seen().holds, wanted)))  # noqa: B023 # ends in this turn
+            if achieved and len(found.way) == 1:
+                # Somebody may have gone on with it since: whether that is well is not for the robot to say.
+                self._end("succeeded")
+                return
 
-    async def _act(self, action: Action, primitives: Primitives, seen: Callable[[], State]) -> None:
-        """Does an action, primitive by primitive, while what it needs stays where it is."""
+    async def _act(self, action: Action, primitives: Primitives, seen: Callable[[], State]) -> bool:
+        """Does an action, primitive by primitive, while what it needs stays where it is.
+
+        Returns:
+            Whether its effects were perceived, be it for a moment.
+        """
         operator = self._world.domain.operators[action.operator]
         needs = needed_places(action, operator)
         steps = self._skills.steps(action, operator)
-        effects = self._effects(action, seen())
+        wanted = self._effects(action, seen())
+        achieved = False
 
         def in_place() -> bool:
+            nonlocal achieved
             state = seen()
-            return all(map(state.holds, needs)) or all(map(state.holds, effects))
+            achieved = achieved or all(map(state.holds, wanted))
+            return achieved or all(map(state.holds, needs))
 
         for primitive in steps:
             await _while(in_place, primitives.do(primitive))
+        await _patiently(lambda: in_place() and achieved)
+        return achieved
 
     def _effects(self, action: Action, state: State) -> tuple[Literal, ...]:
         return effects(action, self._world.domain.operators[action.operator], state, self._world)

@@ -42,6 +42,7 @@ from polaris_nl.model.domain import Action
 from polaris_nl.model.errors import RunError
 from polaris_nl.model.formula import Literal
 from polaris_nl.model.state import Mutexes, State
+from polaris_nl.model.text import capital
 from polaris_nl.model.world import World
 
 LOOK_S = 0.05
@@ -206,7 +207,7 @@ class StretchRobot:
                 if self._profile.simulated
                 else "see that its driver runs, and that this machine is in the same ROS domain"
             )
-            raise RunError(f"{self._profile.title.capitalize()} doesn't answer; {way}") from error
+            raise RunError(f"{capital(self._profile.title)} doesn't answer; {way}") from error
 
     async def _begin(self, goal: SendGoal) -> None:
         self._end_mission("cancelled", "another goal came")
