@@ -1,37 +1,33 @@
-"""A run on a robot over ROS 2: link, plan, clock and log brought together."""
+"""A run on a robot over ROS 2. rclpy is loaded here and nowhere else, when a run begins."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from contextlib import ExitStack
 
+from polaris_nl.execution.backend import Robot
 from polaris_nl.execution.clock import RealClock
-from polaris_nl.execution.events import Event, Planned
-from polaris_nl.execution.replanner import ThreadedReplanner
+from polaris_nl.execution.events import Event
 from polaris_nl.execution.ros.profile import Profile
 from polaris_nl.execution.ros.recording import Definition, Recorder
-from polaris_nl.execution.runner import run
-from polaris_nl.execution.state import HumanCommand, RunPlan
-from polaris_nl.logs.paths import new_log_path
+from polaris_nl.execution.ros.robot import StretchRobot
+from polaris_nl.execution.state import HumanCommand
 from polaris_nl.logs.writer import LogWriter, RawKind
-from polaris_nl.model.errors import RunError
-from polaris_nl.planning.plan_json import plan_json
-from polaris_nl.runs import RunOrder, RunReport, attachments
+from polaris_nl.runs import Connect, RunOrder, RunReport, Sink, run_on
 
 
 def run_on_robot(
-    order: RunOrder,
     profile: Profile,
+    order: RunOrder,
     *,
     confirmed: bool,
-    show: Callable[[Event], None] = lambda event: None,
+    show: Sink = lambda event: None,
     commands: Callable[[], Iterable[HumanCommand]] = tuple,
 ) -> RunReport:
-    """Runs a program on a robot, in real time, and logs its messages beside the decisions.
+    """Runs a program on a robot, in real time, and logs the robot's own messages beside the decisions.
 
     Args:
-        order: what is run; `people` and `live` mean nothing here.
         profile: which robot.
+        order: what is run; `people` and `live` mean nothing here.
         confirmed: a person said yes to this run.
         show: is given every event as it happens.
         commands: what people have commanded since it was last asked.
@@ -41,49 +37,29 @@ def run_on_robot(
             skill for something. Nothing has been commanded then.
         LogError: the log can't be made.
     """
-    if not confirmed:
-        raise RunError("A robot moves only after a clear yes, and there was none.")
-    from polaris_nl.execution.ros.robot import StretchRobot
-
-    planner = order.planner
-    world = planner.world
     clock = RealClock()
-    path = order.log or new_log_path(world.name)
-    plan = RunPlan(order.automaton, order.plan, world, planner.wording, order.settings)
-    with ExitStack() as stack:
-        log = stack.enter_context(LogWriter(path, attachments(order)))
+    connect = connection(profile, order, clock)
+    return run_on(connect, clock, order, confirmed=confirmed, show=show, commands=commands)
 
-        def sink(event: Event) -> None:
-            log.write(event)
-            show(event)
 
+def connection(profile: Profile, order: RunOrder, clock: RealClock) -> Connect:
+    """What makes the robot of a run, with its log."""
+
+    def connect(log: LogWriter, sink: Callable[[Event], None], now: float) -> Robot:
         def keep(topic: str, definition: Definition, time: float, data: bytes) -> None:
             log.write_raw(topic, RawKind(definition.name, definition.text), time, data)
 
-        record = Recorder(keep, profile, clock)
-        stack.callback(record.close)
-        for event in order.before:
-            log.write(event)
-        log.write(
-            Planned(
-                time=clock.now(),
-                revision=0,
-                status=order.plan.status,
-                plan=plan_json(order.plan, order.automaton),
-                ms=order.plan.ms,
-            )
-        )
-        robot = StretchRobot(profile, world, planner.segment, planner.mutexes, clock, record)
-        stack.callback(robot.close)
-        replanner = ThreadedReplanner(planner.segment)
-        stack.callback(replanner.close)
-        result = run(
-            plan,
-            robot,
+        recorder = Recorder(keep, profile, clock)
+        planner = order.planner
+        return StretchRobot(
+            profile,
+            planner.world,
+            planner.segment,
+            planner.mutexes,
             clock,
-            confirmed=confirmed,
-            sink=sink,
-            commands=commands,
-            replanner=replanner,
+            state=order.resume.beliefs if order.resume else None,
+            record=recorder,
+            closed=recorder.close,
         )
-    return RunReport(result, path, log.failure or record.failure)
+
+    return connect

@@ -170,6 +170,10 @@ def _planning(adder: _Adder) -> None:
     )
     run.add_argument("--log", metavar="OUT.mcap", type=Path, help="where to write the log")
     run.add_argument(
+        "--resume", metavar="LOG.mcap", type=Path,
+        help="go on where the run in this log was interrupted; nothing that is done is done again",
+    )  # fmt: skip
+    run.add_argument(
         "--people", metavar="ACTION", action="append",
         help="what simulated people prefer to do, by the names in the world file; none: they do nothing",
     )  # fmt: skip

@@ -7,6 +7,8 @@ import sys
 import threading
 from argparse import Namespace
 from collections.abc import Callable, Iterable
+from dataclasses import replace
+from functools import partial
 
 from polaris_nl.automaton.automaton import Automaton
 from polaris_nl.commands.common import (
@@ -27,9 +29,10 @@ from polaris_nl.model.errors import RunError, UsageError, did_you_mean
 from polaris_nl.model.text import capital
 from polaris_nl.model.world import World
 from polaris_nl.render.glyphs import glyphs_for
+from polaris_nl.render.layout import wrapped
 from polaris_nl.render.log import event_rows
 from polaris_nl.robot_runs import run_on_robot
-from polaris_nl.runs import RunOrder, run_simulated
+from polaris_nl.runs import RunOrder, resumable, run_simulated
 from polaris_nl.session import Session
 
 NONE = "none"
@@ -50,15 +53,16 @@ def run(arguments: Namespace) -> int:
         order = RunOrder(
             program.automaton, plan, session.planner, people, arguments.live, arguments.log
         )
-        if profile is not None:
-            confirmed = arguments.yes or agreed(session, profile)
+        if arguments.resume is not None:
+            point = resumable(arguments.resume, program.automaton, plan, session.planner)
+            order = replace(order, resume=point)
+        confirmed = profile is None or arguments.yes or agreed(session, profile)
         listens = arguments.live or (profile is not None and sys.stdin.isatty())
         commands = Keyboard(session.understanding, program.automaton).commands if listens else tuple
-        show = shower(arguments.json)
-        if profile is not None:
-            report = run_on_robot(order, profile, confirmed=confirmed, show=show, commands=commands)
-        else:
-            report = run_simulated(order, confirmed=True, show=show, commands=commands)
+        carry_out = run_simulated if profile is None else partial(run_on_robot, profile)
+        report = carry_out(
+            order, confirmed=confirmed, show=shower(arguments.json), commands=commands
+        )
     result = report.result
     met = objectives_met(world, result.beliefs)
     if report.failure:
@@ -88,13 +92,12 @@ def agreed(session: Session, profile: Profile) -> bool:
     Raises:
         RunError: nobody can be asked, or the answer isn't a yes.
     """
-    print(session.say("run it").say, file=sys.stderr)
+    for row in wrapped(session.say("run it").say, width()):
+        print(row.text.rstrip(), file=sys.stderr)
     print(f"{capital(profile.title)} will move. Yes or no? ", end="", file=sys.stderr, flush=True)
     answer = sys.stdin.readline()
     if not answer:
-        raise RunError(
-            "Nothing moves without a yes, and nobody answers here; add --yes to give it."
-        )
+        raise RunError("A robot moves only after a yes, and nobody answers; --yes gives it.")
     if session.understanding.interpret(answer, session.snapshot.automaton)[0].command != "yes":
         raise RunError("Nothing was moved, since the answer wasn't a yes.")
     return True

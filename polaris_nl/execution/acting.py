@@ -52,7 +52,7 @@ def pursuing(work: Work) -> None:
         work.go("confirming")
     elif reported is not None and work.now - reported > work.run.settings.report_s:
         withdraw(work)
-        deviate(work, missing, again=False)
+        deviate(work, missing)
     elif work.now - work.state.sent_at > work.run.settings.goal_s:
         halt(work, f"the robot took too long to {work.action_words}", work.state.goal_literals)
 

@@ -9,6 +9,8 @@ plan was made: the rest of the segment is planned anew from what is perceived.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from polaris_nl.execution.events import Deviated, Recovered, Replanned
 from polaris_nl.execution.halting import halt
 from polaris_nl.execution.state import PlanAnswer, PlanRequest
@@ -20,14 +22,8 @@ from polaris_nl.model.text import sentence
 _NO_OTHER_WAY = "no other way"
 
 
-def deviate(work: Work, missing: tuple[Literal, ...], again: bool = True) -> None:
-    """Begins a deviation.
-
-    Args:
-        work: the step.
-        missing: what isn't perceived.
-        again: whether another way may be looked for.
-    """
+def deviate(work: Work, missing: tuple[Literal, ...]) -> None:
+    """Begins a deviation: what is missing isn't perceived, or isn't known."""
     if work.state.deviations >= work.run.settings.deviations:
         halt(work, f"things keep changing. {sentence(work.expected_and_seen(missing))}", missing)
         return
@@ -47,7 +43,7 @@ def deviate(work: Work, missing: tuple[Literal, ...], again: bool = True) -> Non
         expected=missing,
         observed=observed,
         deviations=work.state.deviations + 1,
-        held="" if again and not work.state.word.intersection(missing) else _NO_OTHER_WAY,
+        held=_NO_OTHER_WAY if work.state.word.intersection(missing) else "",
     )
 
 
@@ -84,7 +80,11 @@ def _ask(work: Work, missing: tuple[Literal, ...]) -> None:
         return  # It is being planned, or was in vain.
     seen = " ".join(map(str, (*missing, *work.instead(missing))))
     settled = work.held_for(seen, work.run.settings.settle_s)
-    if not settled or work.state.replans >= work.run.settings.replans:
+    spent = (
+        work.state.replans >= work.run.settings.replans
+        or work.state.retries >= work.run.settings.retries
+    )
+    if not settled or spent:
         return
     segment = work.run.plan.segments[work.state.segment]
     goals = tuple(x for x in segment.goals if x not in work.state.served)
@@ -121,7 +121,10 @@ def _taken_up(work: Work, answer: PlanAnswer) -> bool:
             segment=work.state.segment,
         )
     )
-    work.state = work.state.on_another_way(answer.actions)
+    # The same action once more is a retry, and those are counted.
+    again = answer.actions[:1] == old[:1]
+    retries = work.state.retries + 1 if again else 0
+    work.state = replace(work.state.on_another_way(answer.actions), retries=retries)
     work.go("idle", "planned anew", expected=(), observed=())
     return True
 

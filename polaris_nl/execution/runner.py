@@ -24,7 +24,7 @@ from polaris_nl.model.domain import Action
 from polaris_nl.model.errors import RunError
 from polaris_nl.model.evaluate import holds
 from polaris_nl.model.state import State
-from polaris_nl.model.text import listed, sentence
+from polaris_nl.model.text import listed
 from polaris_nl.model.world import Objective, World
 
 
@@ -203,8 +203,7 @@ def _started(
     program = program_json(Program(plan.automaton, plan.world.domain.name, plan.world.name))
     text = "The run starts."
     if resume is not None:
-        names = [plan.automaton.checkpoints[c].name for c in resume.reached]
-        text = sentence(f"the run goes on after {names[-1] if names else 'its start'}")
+        text = f"The run goes on where it was interrupted: {_where(plan, resume)}."
     return RunStarted(
         time=now,
         text=text,
@@ -213,3 +212,12 @@ def _started(
         beliefs=[str(f) for f in sorted(observation.state.facts)],
         resumed=resumed_json(resume) if resume is not None else {},
     )
+
+
+def _where(plan: RunPlan, state: ExecutorState) -> str:
+    checkpoints = plan.automaton.checkpoints
+    if not state.segment:
+        return f"at {checkpoints[state.checkpoint].name}"
+    done, count = state.done_actions, len(state.actions)
+    way = f"on the way to {checkpoints[state.segment].name}"
+    return f"{way}, {done} of {count} actions done" if done else way

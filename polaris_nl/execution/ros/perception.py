@@ -14,7 +14,7 @@ from dataclasses import dataclass, field, replace
 from polaris_nl.execution.ros.layout import Layout
 from polaris_nl.execution.ros.profile import Sight
 from polaris_nl.model.formula import Literal
-from polaris_nl.model.state import Mutexes
+from polaris_nl.model.state import Mutexes, State
 from polaris_nl.model.world import World
 
 PLACES = ("at", "in", "has", "holding")
@@ -119,13 +119,14 @@ class Memory:
     heard: int = 0
 
 
-def remembered(world: World, now: float) -> Memory:
-    """What is believed before anything is seen: the world file, as an assumption."""
+def remembered(world: World, now: float, state: State | None = None) -> Memory:
+    """What is believed before anything is seen: a state (the world's at its start), as an assumption."""
+    facts = (state or world.initial).facts
     changing = [p for p in world.domain.predicates if _changes(world, p)]
-    static = frozenset(f for f in world.facts if f.predicate not in changing)
+    static = frozenset(f for f in facts if f.predicate not in changing)
     beliefs = {
         variable_of(f): Belief(f, now, ASSUMED)
-        for f in world.facts
+        for f in facts
         if f.predicate in changing and f != HAND
     }
     return Memory(static, beliefs)

@@ -64,7 +64,9 @@ class StretchRobot:
         plan: the robot-side planner.
         mutexes: what excludes what.
         clock: the run's clock.
+        state: what is believed at the start, where it isn't the world's; a run that is resumed has one.
         record: is given every message that goes either way: topic, type, message.
+        closed: is called when the link is closed and nothing more will be recorded.
 
     Raises:
         RunError: rclpy is missing, or the robot doesn't answer.
@@ -77,7 +79,10 @@ class StretchRobot:
         plan: PlanTo,
         mutexes: Mutexes,
         clock: Clock,
+        *,
+        state: State | None = None,
         record: Record = lambda topic, kind, message: None,
+        closed: Callable[[], None] = lambda: None,
     ) -> None:
         self.name = profile.name
         self._profile = profile
@@ -86,7 +91,8 @@ class StretchRobot:
         self._clock = clock
         self._skills = skills_for(world.domain)
         self._scene = Scene.of(world, profile.perception, mutexes)
-        self._memory = remembered(world, clock.now())
+        self._memory = remembered(world, clock.now(), state)
+        self._closed = closed
         self._senses = Intake(profile, world, clock, self._believed)
         self._driver = Driver(profile, self._senses.take, record)
         self._primitives = Primitives(self._driver, self._senses)
@@ -100,7 +106,12 @@ class StretchRobot:
         self._planner = ThreadPoolExecutor(max_workers=1, thread_name_prefix="robot-planning")
         if profile.simulated:
             stay_on_this_machine()
-        self._owner = Owner("polaris_nl", self._driver.set_up, self._watch, self._withdraw)
+        try:
+            self._owner = Owner("polaris_nl", self._driver.set_up, self._watch, self._withdraw)
+        except BaseException:
+            self._planner.shutdown()
+            closed()
+            raise
         try:
             self._owner.do(self._ready(), profile.times.ready + 1.0)
         except BaseException:
@@ -155,6 +166,7 @@ class StretchRobot:
                 self._owner.do(self._let_go(), 2.0)
         self._owner.close()
         self._planner.shutdown(wait=True, cancel_futures=True)
+        self._closed()
 
     # The owner's thread
 
