@@ -85,7 +85,8 @@ def start(monkeypatch: pytest.MonkeyPatch) -> Iterator[Start]:
         for process in processes:
             if process.process.poll() is None:
                 process.process.kill()
-            process.process.communicate()
+            # Shown where a test fails.
+            print(process.process.communicate()[1])
 
 
 @pytest.fixture
