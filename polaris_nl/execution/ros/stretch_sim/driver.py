@@ -155,8 +155,6 @@ class Driver:
 
     def refuses(self, now: float) -> str:
         """Why a trajectory would be rejected now, or ""."""
-        soon = now - self._goal_at < GOAL_GAP_S
-        self._goal_at = now
         if self._mishaps.take("reject", "trajectory"):
             return "a fault was asked for"
         if self.runstopped:
@@ -165,8 +163,9 @@ class Driver:
             return "the robot isn't homed"
         if self.mode not in (POSITION, TRAJECTORY):
             return f"the robot is in {self.mode} mode"
-        if soon:
+        if now - self._goal_at < GOAL_GAP_S:
             return "it comes too soon after the last one"
+        self._goal_at = now
         return ""
 
     def follow(self, names: Sequence[str], points: Sequence[Waypoint]) -> Trajectory:

@@ -8,6 +8,7 @@ from typing import Any
 
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
+from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from sensor_msgs.msg import BatteryState, JointState
@@ -59,6 +60,8 @@ class StretchNode(Node):  # type: ignore[misc]
         super().__init__("stretch_driver")
         self.simulator = simulator
         self._driver = simulator.driver
+        # A service that waits must not keep everything else waiting.
+        self._lasting_group = ReentrantCallbackGroup()
         # Depth 1, reliable, as the driver has them; what is said once isn't lost for that.
         once = ("heard", "said", "skill")
         self._out = {
@@ -129,6 +132,7 @@ class StretchNode(Node):  # type: ignore[misc]
             "time": round(simulator.time, 3),
             "pose": [round(v, 4) for v in (pose.x, pose.y, pose.yaw)],
             "region": simulator.scene.region,
+            "faults": simulator.struck,
             "physics": simulator.body.physical,
             "real_time_factor": round(simulator.real_time_factor, 3),
             "facts": sorted(map(str, simulator.scene.state.facts)),
@@ -238,7 +242,7 @@ class StretchNode(Node):  # type: ignore[misc]
                     answer = Answer(False, "The run-stop was pressed.")
             return _answered(response, answer)
 
-        self.create_service(Trigger, name, serve)
+        self.create_service(Trigger, name, serve, callback_group=self._lasting_group)
 
     def _demo(self, name: str, find: Any, nothing: str, regardless: bool = False) -> None:
         async def serve(request: Any, response: Any) -> Any:
@@ -250,7 +254,7 @@ class StretchNode(Node):  # type: ignore[misc]
             await self._actions.until(lambda: bool(replies))
             return _answered(response, Answer(replies[0].ok or regardless, replies[0].reason))
 
-        self.create_service(Trigger, name, serve)
+        self.create_service(Trigger, name, serve, callback_group=self._lasting_group)
 
 
 def _answered(response: Any, answer: Answer) -> Any:

@@ -113,6 +113,7 @@ class Simulator:
         self.scene = Scene(world, mutexes, self.layout, self.floor, self.body)
         self.cameras = Cameras(self.scene, Settings(options.noise_m, options.dropout, options.seed))
         self.time = 0.0
+        self.struck = 0
         self.navigation: Navigation | None = None
         self._people = People(self.scene, options.people, mutexes, options.seed)
         self._speed = options.speed
@@ -221,6 +222,7 @@ class Simulator:
         Raises:
             UsageError: it names something that isn't there.
         """
+        self.struck += 1
         if fault.kind in GOAL_FAULTS:
             self.mishaps.add(fault)
             return
