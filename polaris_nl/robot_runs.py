@@ -12,6 +12,7 @@ from polaris_nl.execution.ros.recording import Definition, Recorder
 from polaris_nl.execution.ros.robot import StretchRobot
 from polaris_nl.execution.state import HumanCommand
 from polaris_nl.logs.writer import LogWriter, RawKind
+from polaris_nl.model.errors import RunError
 from polaris_nl.runs import Connect, RunOrder, RunReport, Sink, run_on
 
 
@@ -37,6 +38,8 @@ def run_on_robot(
             skill for something. Nothing has been commanded then.
         LogError: the log can't be made.
     """
+    if not confirmed:
+        raise RunError("A robot moves only after a clear yes, and there was none.")
     clock = RealClock()
     connect = connection(profile, order, clock)
     return run_on(connect, clock, order, confirmed=confirmed, show=show, commands=commands)

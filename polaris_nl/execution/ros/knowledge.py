@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from polaris_nl.execution.backend import Sighting
+from polaris_nl.execution.beliefs import contradicted
 from polaris_nl.execution.ros.perception import (
     HAND,
     HEARD,
@@ -46,7 +47,15 @@ def unknown(memory: Memory, percepts: Percepts, now: float, scene: Scene) -> fro
         limit = scene.how.stale_s if look.sees(variable, belief) else scene.how.memory_s
         if now - belief.stamp > limit:
             found |= scene.choices.get(variable, frozenset({variable}))
+    found |= contradicted(_exclusive(memory), scene.mutexes)
     return frozenset(found)
+
+
+def _exclusive(memory: Memory) -> State:
+    """What may be believed beside what it excludes: all but the values of variables that have just one."""
+    return State(
+        frozenset(v for v, belief in memory.beliefs.items() if belief.value == v and v != ROBOT)
+    )
 
 
 @dataclass(frozen=True, slots=True)

@@ -76,7 +76,9 @@ class Mission:
             # Refused before anything was accepted is a goal that was never taken.
             self._end("failed" if self._accepted else "rejected", str(refusal))
         except Late as late:
-            self._end("failed", str(late))
+            if self._accepted:
+                self._end("failed", str(late))
+            self.over = True  # A robot that doesn't answer says nothing, either.
 
     async def _pursue(
         self, primitives: Primitives, seen: Callable[[], State], think: Think

@@ -21,6 +21,8 @@ PLACES = ("at", "in", "has", "holding")
 """Where an object is: in exactly one of these."""
 ROBOT = Literal("robot-at")
 HAND = Literal("hand-empty")
+GAP_S = 1.0
+"""Looks that are further apart don't confirm each other."""
 ASSUMED = "assumed"
 HEARD = "speech"
 
@@ -100,7 +102,8 @@ class Belief:
     Attributes:
         value: an atom, or None for "none of them".
         stamp, source: when and by what it was last confirmed.
-        other: another value that has been seen since `other_since`, and isn't believed yet.
+        other: another value that has been seen since `other_since`, last at `other_stamp`, and isn't
+            believed yet.
     """
 
     value: Literal | None
@@ -108,6 +111,7 @@ class Belief:
     source: str
     other: Literal | None = None
     other_since: float | None = None
+    other_stamp: float = -1.0
 
 
 @dataclass(frozen=True)
@@ -176,11 +180,12 @@ def _believe(
         return before
     if value == before.value:
         return Belief(value, stamp, source)
-    if value != before.other or before.other_since is None:
-        return replace(before, other=value, other_since=stamp)
-    if stamp - before.other_since >= settle_s:
+    since = before.other_since
+    if value != before.other or since is None or stamp - before.other_stamp > GAP_S:
+        return replace(before, other=value, other_since=stamp, other_stamp=stamp)
+    if stamp - since >= settle_s:
         return Belief(value, stamp, source)
-    return before
+    return replace(before, other_stamp=stamp)
 
 
 def _values(memory: Memory, percepts: Percepts, now: float, scene: Scene) -> Iterator[_Look]:
