@@ -1,11 +1,12 @@
 """A small mock of the robot's driver, in a process of its own: real messages, no physics, bad manners.
 
-    python -m tests.execution.ros.mock_driver WORLD [people's preferences, or none]
+    python -m tests.execution.ros.mock_driver WORLD [people's preferences, or none] [--plain]
 
 It answers on the driver's topics, services and actions. The base glides straight to where it is sent,
 joints jump, skills do at once what they say, and people act as the world file says. `/mock/fault`
 (JSON: a fault's fields) makes it reject, fail, lie, never end, ignore cancelling, go blind, and worse;
-killing and freezing it is done with signals. `/mock/log` tells what was asked of it, and when.
+killing and freezing it is done with signals. With --plain it has no actions, and goes by velocities
+and joint positions. `/mock/log` tells what was asked of it, and when.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import MultiThreadedExecutor
 from rclpy.node import Node
 from sensor_msgs.msg import BatteryState, JointState
-from std_msgs.msg import Bool, String
+from std_msgs.msg import Bool, Float64MultiArray, String
 from std_srvs.srv import SetBool, Trigger
 from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker, MarkerArray
@@ -39,8 +40,11 @@ from polaris_nl.model.world_file import load_world
 from polaris_nl.planning.planner import Planner
 
 RATE_S = 1 / 30
+PLAIN = "--plain"
 SPEED = 6.0
 """Metres a second: tests needn't watch it drive."""
+HASTE = 4.0
+"""How many times as fast as it is told it drives by velocity, for the same reason."""
 SILENCE_S = 0.5
 """A velocity that isn't repeated for so long is withdrawn."""
 PEOPLE_S = 1.5
@@ -50,7 +54,7 @@ PEOPLE_S = 1.5
 class MockDriver(Node):
     """The node."""
 
-    def __init__(self, world_name: str, people: tuple[str, ...] | None) -> None:
+    def __init__(self, world_name: str, people: tuple[str, ...] | None, plain: bool) -> None:
         super().__init__("mock_driver")
         self.world = load_world(world_name)
         mutexes = Planner(self.world).mutexes
@@ -72,7 +76,7 @@ class MockDriver(Node):
         self.faults: dict[str, int] = {}
         self.until: dict[str, float] = {}
         self.jump = self.slow_s = 0.0
-        self.muted = False
+        self.muted = self.streaming = False
         group = ReentrantCallbackGroup()
         make = self.create_publisher
         self.out: dict[str, Any] = {
@@ -100,9 +104,17 @@ class MockDriver(Node):
             self.create_service(Trigger, name, self.switcher(mode), callback_group=group)
         self.create_service(Trigger, "/stop_the_robot", self.on_stop, callback_group=group)
         self.create_service(SetBool, "/runstop", self.on_runstop, callback_group=group)
+        if plain:
+            hear(Float64MultiArray, "/joint_pose_cmd", self.on_pose, 1, callback_group=group)
+            name = "/activate_streaming_position"
+            self.create_service(Trigger, name, self.on_streaming, callback_group=group)
         for kind, name, work in (
-            (NavigateToPose, "/navigate_to_pose", self.navigate),
-            (FollowJointTrajectory, "/stretch_controller/follow_joint_trajectory", self.reach),
+            ()
+            if plain
+            else (
+                (NavigateToPose, "/navigate_to_pose", self.navigate),
+                (FollowJointTrajectory, "/stretch_controller/follow_joint_trajectory", self.reach),
+            )
         ):
             ActionServer(
                 self, kind, name, work, callback_group=group,
@@ -163,17 +175,16 @@ class MockDriver(Node):
             return SPEED, 0.0
         linear, angular = self.velocity if self.mode == "navigation" else (0.0, 0.0)
         self.yaw = wrapped(self.yaw + angular * RATE_S)
-        self.x += linear * math.cos(self.yaw) * RATE_S
-        self.y += linear * math.sin(self.yaw) * RATE_S
+        self.x += linear * HASTE * math.cos(self.yaw) * RATE_S
+        self.y += linear * HASTE * math.sin(self.yaw) * RATE_S
         return linear, angular
 
     def show(self, stamp: Any, now: float) -> None:
-        """What is in sight: everything in the robot's region, and what it holds."""
-        here = self.layout.region_at(self.x, self.y)
+        """What is in sight: everything that isn't behind a door, as if there were cameras in all rooms."""
         markers = []
         for entity in self.world.entities.values():
             at = self.where(entity.name)
-            if at is None or self.layout.region_at(*at) != here:
+            if at is None:
                 continue
             marker = Marker(ns=entity.type, text=entity.name, id=len(markers))
             marker.header.stamp, marker.header.frame_id = stamp, "map"
@@ -309,6 +320,15 @@ class MockDriver(Node):
         facts.add(literal) if literal.positive else facts.discard(literal.atom)
         self.state = State(frozenset(facts))
 
+    def on_pose(self, message: Float64MultiArray) -> None:
+        self.note("pose", list(message.data))
+        if self.streaming and self.mode == "position":
+            self.joints["wrist_extension"], self.joints["joint_lift"] = message.data[:2]
+
+    def on_streaming(self, _: Any, answer: Any) -> Any:
+        self.streaming = answer.success = True
+        return answer
+
     def switcher(self, mode: str) -> Any:
         def switch(_: Any, answer: Any) -> Any:
             answer.success = not self.stopped and self.mode != "homing"
@@ -424,8 +444,9 @@ def half(yaw: float) -> tuple[float, float]:
 
 def main() -> None:
     rclpy.init()
-    preferred = None if len(sys.argv) < 3 else tuple(n for n in sys.argv[2:] if n != "none")
-    node = MockDriver(sys.argv[1], preferred)
+    world, *people = (a for a in sys.argv[1:] if a != PLAIN)
+    preferred = tuple(n for n in people if n != "none") if people else None
+    node = MockDriver(world, preferred, PLAIN in sys.argv)
     executor = MultiThreadedExecutor(num_threads=6)
     executor.add_node(node)
     print("ready", flush=True)

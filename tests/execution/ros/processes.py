@@ -5,10 +5,12 @@ from __future__ import annotations
 import contextlib
 import json
 import os
-import selectors
+import queue
 import signal
+import socket
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -23,13 +25,25 @@ READY_S = 30.0
 MOVING = 0.02
 
 
-def domains() -> Callable[[], str]:
-    """ROS domains that no other test process on this machine is likely to use just now."""
-    first, used = os.getpid() * 7, iter(range(10**6))
-    return lambda: str(1 + (first + next(used)) % 100)
+_claims: list[socket.socket] = []
 
 
-new_domain = domains()
+def new_domain() -> str:
+    """A ROS domain that no other test on this machine uses; it is claimed by a port until the next one."""
+    for turn in range(100):
+        # One after the other, since those that were killed stay visible for a while.
+        domain = 1 + (os.getpid() * 37 + len(_claims) + turn) % 100
+        claim = socket.socket()
+        try:
+            claim.bind(("127.0.0.1", 21_000 + domain))
+        except OSError:
+            claim.close()
+            continue
+        for old in _claims:
+            old.close()
+        _claims.append(claim)
+        return str(domain)
+    raise AssertionError("all ROS domains are in use")
 
 
 class Process:
@@ -44,16 +58,22 @@ class Process:
             cwd=ROOT,
             env={**os.environ, "PYTHONPATH": f"{ROOT}{os.pathsep}{ROOT / 'tui'}"},
         )
-        self._selector = selectors.DefaultSelector()
+        self._lines: queue.SimpleQueue[str] = queue.SimpleQueue()
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+
+    def _read(self) -> None:
         assert self.popen.stdout is not None
-        self._selector.register(self.popen.stdout, selectors.EVENT_READ)
+        for line in self.popen.stdout:
+            self._lines.put(line)
+        self._lines.put("")
 
     def line(self, seconds: float = READY_S) -> str:
         """The next line that it prints; "" if none comes, or it has ended."""
-        assert self.popen.stdout is not None
-        if self._selector.select(seconds):
-            return self.popen.stdout.readline()
-        return ""
+        try:
+            return self._lines.get(timeout=seconds)
+        except queue.Empty:
+            return ""
 
     def wait_for(self, text: str) -> None:
         """Waits for a line with a text."""
@@ -82,21 +102,33 @@ class Process:
         self.popen.send_signal(signal.SIGCONT)
 
     def close(self) -> None:
-        """Ends it, whatever state it is in."""
-        self.kill()
-        self.popen.wait(10)
-        self._selector.close()
+        """Ends it, whatever state it is in; politely first, so that others know at once that it is gone."""
+        with contextlib.suppress(ProcessLookupError):
+            self.thaw()
+            self.popen.terminate()
+        try:
+            self.popen.wait(3)
+        except subprocess.TimeoutExpired:
+            self.kill()
+            self.popen.wait(10)
+        self._reader.join(10)
         if self.popen.stdout is not None:
             self.popen.stdout.close()
 
 
 class Onlooker:
-    """Sees from outside what a driver does: its odometry, and what it was asked."""
+    """Sees from outside what a driver does: its odometry, and what it was asked.
+
+    Attributes:
+        moved_at: when its odometry showed motion.
+        asked: what it was asked, by our clock when the news came; `told`: the same by the driver's.
+    """
 
     def __init__(self, clock: RealClock, fault_topic: str = "/mock/fault") -> None:
         self.clock = clock
         self.moved_at: list[float] = []
         self.asked: list[tuple[float, str, Any]] = []
+        self.told: list[tuple[float, str, Any]] = []
         self.odometry_at = 0.0
         self._topic = fault_topic
         self._faults: Any = None
@@ -117,6 +149,7 @@ class Onlooker:
     def _note(self, message: Any) -> None:
         value = json.loads(message.data)
         self.asked.append((self.clock.now(), value["what"], value["value"]))
+        self.told.append((value["at"], value["what"], value["value"]))
 
     def fault(self, fault: Mapping[str, Any]) -> None:
         """Has a fault strike."""

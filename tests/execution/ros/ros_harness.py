@@ -100,6 +100,17 @@ class Stage:
             yield what
 
 
+def _take(line: str, stage: Stage) -> None:
+    """Takes in what the executor's process prints: an event, or else what went wrong."""
+    if not line.startswith("{"):
+        stage.failure += line
+        return
+    value = json.loads(line)
+    event = event_of(value["topic"], value["event"])
+    assert event is not None
+    stage.show(event)
+
+
 def _no_space(event: Event) -> None:
     raise OSError(errno.ENOSPC, "No space left on device")
 
@@ -184,6 +195,7 @@ class RosHarness:
             logged += found
             stage.events[:] = list(logged)
             if told:
+                assert any(isinstance(e, RunEnded) for e in found), stage.failure
                 break
         self._watch(stage)
         ended = next(e for e in reversed(logged) if isinstance(e, RunEnded))
@@ -215,17 +227,15 @@ class RosHarness:
         try:
             while time.monotonic() < end:
                 line = executor.line(0.02)
-                if line.startswith("{"):
-                    value = json.loads(line)
-                    event = event_of(value["topic"], value["event"])
-                    assert event is not None
-                    stage.show(event)
-                elif line:
-                    stage.failure = line
+                if line:
+                    _take(line, stage)
                 elif executor.popen.poll() is not None:
                     return True
                 if RESTART in stage.happen():
                     executor.kill()
+                    executor.popen.wait(10)
+                    while line := executor.line(1.0):
+                        _take(line, stage)
                     return False
             raise AssertionError("the run doesn't end")
         finally:
