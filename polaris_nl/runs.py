@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -10,6 +11,7 @@ from polaris_nl.automaton.automaton import Automaton
 from polaris_nl.automaton.program import Program, program_json
 from polaris_nl.execution.backend import Robot
 from polaris_nl.execution.clock import Clock, RealClock, VirtualClock
+from polaris_nl.execution.durations_file import learn
 from polaris_nl.execution.events import Event, Failed, Heard, Planned, Understood
 from polaris_nl.execution.replanner import InlineReplanner, Replanner, ThreadedReplanner
 from polaris_nl.execution.resuming import ResumePoint, resume_point
@@ -20,6 +22,7 @@ from polaris_nl.execution.state import HumanCommand, RunPlan
 from polaris_nl.logs.paths import new_log_path
 from polaris_nl.logs.reader import read_log
 from polaris_nl.logs.writer import LogWriter, attachments_of
+from polaris_nl.model.errors import FileError
 from polaris_nl.planning.plan_json import plan_json
 from polaris_nl.planning.planner import Planner
 from polaris_nl.planning.result import BranchingPlan
@@ -91,8 +94,10 @@ def run_on(
     path = order.log or new_log_path(planner.world.name)
     plan = RunPlan(order.automaton, order.plan, planner.world, planner.wording, order.settings)
     with LogWriter(path, _attachments(order)) as log:
+        happened: list[Event] = []
 
         def sink(event: Event) -> None:
+            happened.append(event)
             sound = not log.failure
             log.write(event)
             show(event)
@@ -113,12 +118,16 @@ def run_on(
                     sink=sink,
                     commands=commands,
                     replanner=replanner,
-                    resume=order.resume.state if order.resume else None,
+                    resume=order.resume,
                 )
             finally:
                 robot.close()
         finally:
             replanner.close()
+            if not isinstance(clock, VirtualClock):
+                # It serves later plans alone; that it can't be kept is no matter of this run.
+                with contextlib.suppress(FileError):
+                    learn(planner.world, happened)
     return RunReport(result, path, log.failure)
 
 
@@ -151,6 +160,7 @@ def run_simulated(
             sink=sink,
             start=now,
             state=order.resume.beliefs if order.resume else None,
+            acted=order.resume.acted if order.resume else (),
         )
 
     real = RealClock()

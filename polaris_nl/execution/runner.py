@@ -11,7 +11,7 @@ from polaris_nl.execution.clock import Clock
 from polaris_nl.execution.events import Event, Observed, RunEnded, RunStarted
 from polaris_nl.execution.executor import step
 from polaris_nl.execution.replanner import NoReplanner, Replanner
-from polaris_nl.execution.resuming import resumed_json
+from polaris_nl.execution.resuming import ResumePoint, resumed_json
 from polaris_nl.execution.state import (
     TERMINAL,
     ExecutorState,
@@ -57,7 +57,7 @@ def run(
     sink: Callable[[Event], None],
     commands: Callable[[], Iterable[HumanCommand]] = tuple,
     replanner: Replanner | None = None,
-    resume: ExecutorState | None = None,
+    resume: ResumePoint | None = None,
 ) -> RunResult:
     """Runs a program to its end.
 
@@ -81,7 +81,7 @@ def run(
     observation = robot.observe()
     if not observation.health.ready:
         raise RunError(f"The run doesn't start: {observation.health.words}.")
-    state = replace(resume or ExecutorState(), now=started, since=started)
+    state = replace(resume.state if resume else ExecutorState(), now=started, since=started)
     sink(_started(plan, robot, observation, resume, started))
     going = _Going(plan, robot, clock, sink, commands, replanner or NoReplanner())
     return going.to_the_end(state, observation)
@@ -197,13 +197,13 @@ def _started(
     plan: RunPlan,
     robot: Robot,
     observation: Observation,
-    resume: ExecutorState | None,
+    resume: ResumePoint | None,
     now: float,
 ) -> RunStarted:
     program = program_json(Program(plan.automaton, plan.world.domain.name, plan.world.name))
     text = "The run starts."
     if resume is not None:
-        text = f"The run goes on where it was interrupted: {_where(plan, resume)}."
+        text = f"The run goes on where it was interrupted: {_where(plan, resume.state)}."
     return RunStarted(
         time=now,
         text=text,

@@ -90,6 +90,7 @@ class SimulatedRobot:
         sink: is given what people do.
         start: the time of the start, in seconds.
         state: what is so at the start; the world's own start by default.
+        acted: what people have done before; each thing is done once.
     """
 
     name = "world"
@@ -104,13 +105,14 @@ class SimulatedRobot:
         sink: Callable[[Event], None] | None = None,
         start: float = 0.0,
         state: State | None = None,
+        acted: Iterable[str] = (),
     ) -> None:
         self.state = state or world.initial
         self._world = world
         self._mutexes = mutexes
         self._plan = plan
         self._settings = how = settings or SimulationSettings()
-        self._people = People(world, how.people, mutexes, how.human_s, how.seed)
+        self._people = People(world, how.people, mutexes, how.human_s, how.seed, acted)
         self._senses = Senses(world, mutexes, start)
         self._troubles = Troubles(faults, start)
         self._sink = sink or (lambda event: None)

@@ -78,8 +78,10 @@ class Work:
 
     def expected_and_seen(self, expected: Sequence[Literal]) -> str:
         """Expected beside observed, as a clause."""
-        seen = self.facts(self.instead(expected))
-        return (
-            f"I expected that {self.facts(expected)}, but I see "
-            f"{f'that {seen}' if seen else 'nothing of it'}"
-        )
+        # That it holds the tray says that its hand isn't empty.
+        shown = [x for x in expected if x.positive] or list(expected)
+        words = f"I expected that {self.facts(shown)}"
+        if not any(map(self.inputs.observation.knows, shown)):
+            return f"{words}, but I can't see just now whether that is so"
+        seen = self.facts(self.instead(shown))
+        return f"{words}, but I see {f'that {seen}' if seen else 'nothing of it'}"

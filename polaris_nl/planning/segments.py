@@ -14,6 +14,7 @@ from polaris_nl.model.evaluate import holds
 from polaris_nl.model.formula import Formula, Literal
 from polaris_nl.model.state import Mutexes, State
 from polaris_nl.model.world import World
+from polaris_nl.planning.costs import Extra
 from polaris_nl.planning.memory import Memory
 from polaris_nl.planning.projection import Projection
 from polaris_nl.planning.result import Step
@@ -74,15 +75,18 @@ class Segments:
     Args:
         world: the world.
         mutexes: what excludes what in it; without, tasks are planned whole.
+        extra: what decides between equally short plans.
     """
 
-    def __init__(self, world: World, mutexes: Mutexes | None = None) -> None:
+    def __init__(
+        self, world: World, mutexes: Mutexes | None = None, extra: Extra | None = None
+    ) -> None:
         self._world = world
         groups = mutexes.groups if mutexes else ()
         # What the domain only declares is not relied on.
         self._rules = Mutexes(tuple(g for g in groups if g not in world.domain.mutexes))
         self._projection = Projection(world, mutexes or Mutexes())
-        self._tasks = Tasks(world)
+        self._tasks = Tasks(world, extra)
         self._simulator = Simulator(world)
         self._known: Memory[Key, SegmentResult] = Memory(MOST_FACTS, _weight)
         self._small: Memory[Key, SegmentResult] = Memory(MOST_FACTS, _weight)

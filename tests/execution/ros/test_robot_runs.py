@@ -127,7 +127,7 @@ def test_an_unknown_robot_is_named(program: Path, capsys: pytest.CaptureFixture[
 
 def test_a_robot_that_is_not_there_is_told_with_a_way_out(care: Planner) -> None:
     times = replace(SIM.times, ready=0.5)
-    with pytest.raises(RunError, match="doesn't answer; start it with: .* --world care-home"):
+    with pytest.raises(RunError, match=r"start it with: polaris-nl stretch-sim --world care-home"):
         StretchRobot(replace(SIM, times=times), care.world, care.segment, care.mutexes, RealClock())
 
 
