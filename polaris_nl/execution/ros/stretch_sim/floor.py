@@ -14,7 +14,7 @@ from pathlib import Path
 
 import yaml
 
-from polaris_nl.execution.ros.layout import Layout
+from polaris_nl.execution.ros.layout import Area, Layout
 from polaris_nl.model.errors import FormatError
 
 Cell = tuple[int, int]
@@ -22,6 +22,8 @@ Cell = tuple[int, int]
 ROBOT_RADIUS_M = 0.22
 _HALF_FURNITURE_M = 0.2
 _MARGIN_M = 0.5
+_FURNITURE_REACH_M = 0.45
+_HALF_WALL_M = 0.06
 _OPEN_RESOLUTION_M = 0.05
 _NEAR_WALL_M = 0.45
 """Cells nearer to a wall than this cost more, so that ways keep their distance where they can."""
@@ -36,6 +38,7 @@ class Floor:
         resolution: metres a cell.
         origin: the lower left corner of the first cell, in metres.
         clearance: for each cell the metres to the nearest occupied one, at most `_NEAR_WALL_M`.
+        solid: for each cell whether something is known to be there, a wall or a piece of furniture.
     """
 
     width: int
@@ -43,6 +46,7 @@ class Floor:
     resolution: float
     origin: tuple[float, float]
     clearance: Sequence[float]
+    solid: bytes
 
     def fits(self, x: float, y: float) -> bool:
         """Whether the robot can be at a point."""
@@ -94,6 +98,40 @@ class Floor:
             if not self._inside(cell) or self._at(cell) <= clearance:
                 return False
         return True
+
+    def walls(self, layout: Layout) -> list[Area]:
+        """Rectangles that cover what is solid, but for furniture, in metres."""
+        left = bytearray(self.solid)
+        for place in layout.places.values():
+            for index, cell in self._around(place.x, place.y, _FURNITURE_REACH_M):
+                x, y = self.point(cell)
+                region = layout.areas.get(layout.region_at(place.x, place.y))
+                if region is not None and region.holds(x, y, _HALF_WALL_M):
+                    left[index] = 0
+        # Each rectangle takes its cells out of what is left for the ones after it.
+        return [self._rectangle(left, start) for start in range(len(left)) if left[start]]
+
+    def _around(self, x: float, y: float, reach: float) -> Iterator[tuple[int, Cell]]:
+        steps = math.ceil(reach / self.resolution)
+        cx, cy = self.cell(x, y)
+        for dy in range(-steps, steps + 1):
+            for dx in range(-steps, steps + 1):
+                cell = cx + dx, cy + dy
+                if self._inside(cell):
+                    yield cell[1] * self.width + cell[0], cell
+
+    def _rectangle(self, left: bytearray, start: int) -> Area:
+        """Takes the largest run to the right of a cell, and then upwards, out of what is left."""
+        x0, y0 = start % self.width, start // self.width
+        x1 = x0
+        while x1 < self.width and left[y0 * self.width + x1]:
+            x1 += 1
+        y1 = y0
+        while y1 < self.height and all(left[y1 * self.width + x0 : y1 * self.width + x1]):
+            left[y1 * self.width + x0 : y1 * self.width + x1] = bytes(x1 - x0)
+            y1 += 1
+        (ox, oy), r = self.origin, self.resolution
+        return Area(ox + x0 * r, oy + y0 * r, ox + x1 * r, oy + y1 * r)
 
     def _inside(self, cell: Cell) -> bool:
         return 0 <= cell[0] < self.width and 0 <= cell[1] < self.height
@@ -180,7 +218,8 @@ def floor_of(layout: Layout, map_file: Path | None) -> Floor:
                 if max(abs(px - place.x), abs(py - place.y)) <= _HALF_FURNITURE_M:
                     occupied[y * width + x] = 1
     cleared = _clearance(occupied, width, height, _OPEN_RESOLUTION_M)
-    return Floor(width, height, _OPEN_RESOLUTION_M, (left, bottom), cleared)
+    solid = bytes(len(occupied))
+    return Floor(width, height, _OPEN_RESOLUTION_M, (left, bottom), cleared, solid)
 
 
 def read_map(path: Path) -> Floor:
@@ -194,6 +233,7 @@ def read_map(path: Path) -> Floor:
         image = path.with_name(given["image"]).read_bytes()
         resolution, origin = float(given["resolution"]), given["origin"]
         free_below = float(given.get("free_thresh", 0.196))
+        solid_above = float(given.get("occupied_thresh", 0.65))
         negate = bool(given.get("negate", 0))
         magic, width, height, _ = _header(image)
         x, y = float(origin[0]), float(origin[1])
@@ -202,15 +242,17 @@ def read_map(path: Path) -> Floor:
     if magic != b"P5" or len(image) < width * height:
         raise FormatError(f"The image {given['image']} isn't an 8-bit PGM.", path)
     levels = image[len(image) - width * height :]
-    occupied = bytearray(width * height)
+    occupied, solid = bytearray(width * height), bytearray(width * height)
     for row in range(height):
         for column in range(width):
             level = levels[row * width + column]
             darkness = level / 255 if negate else (255 - level) / 255
+            cell = (height - 1 - row) * width + column
             # Where nothing is known the robot doesn't go.
-            occupied[(height - 1 - row) * width + column] = darkness >= free_below
+            occupied[cell] = darkness >= free_below
+            solid[cell] = darkness >= solid_above
     cleared = _clearance(occupied, width, height, resolution)
-    return Floor(width, height, resolution, (x, y), cleared)
+    return Floor(width, height, resolution, (x, y), cleared, bytes(solid))
 
 
 def _header(image: bytes) -> tuple[bytes, int, int, int]:

@@ -18,10 +18,10 @@ from polaris_nl.model.formula import Literal
 from polaris_nl.model.state import Mutexes
 from polaris_nl.model.world import World
 
-SURFACE_M = 0.72
-"""The height of tables and other surfaces."""
-CONTAINER_M = 0.86
-INSIDE_M = 0.60
+SURFACE_M = 0.50
+"""The height of tables and other surfaces: low, so that the arm can go out over them from where it rests."""
+CONTAINER_M = 0.58
+INSIDE_M = 0.34
 HANDS_M = 1.0
 """How high people hold things."""
 WALK_M_S = 0.9

@@ -14,7 +14,7 @@ from polaris_nl.execution.ros.stretch_sim import skills
 from polaris_nl.execution.ros.stretch_sim.body import Body, KinematicBody
 from polaris_nl.execution.ros.stretch_sim.driver import Driver
 from polaris_nl.execution.ros.stretch_sim.faults import GOAL_FAULTS, Fault, Mishaps
-from polaris_nl.execution.ros.stretch_sim.floor import floor_of
+from polaris_nl.execution.ros.stretch_sim.floor import Floor, floor_of
 from polaris_nl.execution.ros.stretch_sim.navigation import Navigation, begin
 from polaris_nl.execution.ros.stretch_sim.people import Deed, People
 from polaris_nl.execution.ros.stretch_sim.perception import Cameras, Settings
@@ -29,6 +29,10 @@ LAG_S = 0.5
 """If the machine falls behind by more than this, simulated time is dropped instead."""
 SPEECH_S = (0.5, 0.05, 4.0)
 """How long saying something takes: at least, for each character, at most."""
+
+
+MakeBody = Callable[[World, Layout, Floor, Pose], Body]
+"""Makes a body in a world, with its start."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,14 +99,14 @@ class Simulator:
         world: World,
         now: float,
         options: Options | None = None,
-        make_body: Callable[[World, Layout, Pose], Body] | None = None,
+        make_body: MakeBody | None = None,
     ) -> None:
         options = options or Options()
         self.layout = Layout.of(world)
         start = start_pose(world, self.layout)
         self.floor = floor_of(self.layout, world.map)
         self.body: Body = (
-            make_body(world, self.layout, start)
+            make_body(world, self.layout, self.floor, start)
             if make_body is not None
             else KinematicBody(start, self.floor.fits)
         )
@@ -146,6 +150,11 @@ class Simulator:
     def real_time_factor(self) -> float:
         """Simulated seconds a second, so far."""
         return self._simulated / self._wall if self._wall > 0 else 0.0
+
+    @property
+    def wall(self) -> float:
+        """The clock's seconds since the start."""
+        return self._wall
 
     def _advance(self, now: float) -> None:
         self.time += STEP_S
