@@ -159,10 +159,20 @@ def _planning(adder: _Adder) -> None:
     )
     _program(run)
     run.add_argument(
-        "--robot", choices=("world", "stretch-sim", "stretch"), default="world",
-        help="the simulated world (default), a simulated Stretch, or a Stretch",
+        "--robot", metavar="NAME", default="world",
+        help="world: the simulated world (default); stretch-sim: the simulated Stretch; stretch, stretch-3, "
+        "stretch-re2 or a profile file: a Stretch",
     )  # fmt: skip
+    run.add_argument(
+        "--yes",
+        action="store_true",
+        help="the clear yes without which no robot moves; else it is asked for",
+    )
     run.add_argument("--log", metavar="OUT.mcap", type=Path, help="where to write the log")
+    run.add_argument(
+        "--resume", metavar="LOG.mcap", type=Path,
+        help="go on where the run in this log was interrupted; nothing that is done is done again",
+    )  # fmt: skip
     run.add_argument(
         "--people", metavar="ACTION", action="append",
         help="what simulated people prefer to do, by the names in the world file; none: they do nothing",

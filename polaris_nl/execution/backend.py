@@ -151,6 +151,8 @@ class Observation:
             here nor unknown it is believed that it is false.
         unknown: atoms about which nothing is known just now (out of sight for too long, contradicted,
             never seen); never taken for true or for false. `state` may still hold the last belief.
+        blind: predicates about whose atoms nothing at all is known just now, such as all that a
+            camera sees, when it has failed.
         seen: when and by what atoms were last seen to be true or false; back ends that see
             everything all the time may leave it out.
         health: how the robot is.
@@ -160,13 +162,26 @@ class Observation:
 
     state: State
     unknown: frozenset[Literal] = frozenset()
+    blind: frozenset[str] = frozenset()
     seen: Mapping[Literal, Sighting] = field(default_factory=dict, compare=False)
     health: Health = READY
     moving: bool | None = False
 
+    def knows(self, literal: Literal) -> bool:
+        """Whether it is known if a literal is true or false."""
+        return literal.predicate not in self.blind and literal.atom not in self.unknown
+
     def holds(self, literal: Literal) -> bool:
         """Whether a literal is known to be true."""
-        return literal.atom not in self.unknown and self.state.holds(literal)
+        return self.knows(literal) and self.state.holds(literal)
+
+    @property
+    def certain(self) -> frozenset[Literal]:
+        """The facts that are known to hold."""
+        certain = self.state.facts - self.unknown
+        if self.blind:
+            certain = frozenset(x for x in certain if x.predicate not in self.blind)
+        return certain
 
 
 class Robot(Protocol):

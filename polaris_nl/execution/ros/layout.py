@@ -11,8 +11,9 @@ from polaris_nl.model.world import World
 MARGIN_M = 0.35
 """How far the robot keeps from the edge of a region: half its width, and some."""
 STEP_M = 0.25
-BORDER_M = 0.1
-"""How far beyond a region's edge the robot still counts as in it, so that it doesn't flicker."""
+INSIDE_M = 0.3
+OUTSIDE_M = 0.5
+"""How far inside an edge a region counts as entered, and how far outside as left."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,8 +98,15 @@ class Layout:
         return cls(areas, places, regions, containers)
 
     def region_at(self, x: float, y: float, before: str = "") -> str:
-        """The region of a point, or ""; at an edge, the one that it was in before."""
-        if before in self.areas and self.areas[before].holds(x, y, -BORDER_M):
+        """The region of a point, or "".
+
+        At an edge it is the one that it was in before, so that it doesn't flicker: a region is
+        entered when the whole robot is in, and left when it is well out.
+        """
+        entered = next((n for n, area in self.areas.items() if area.holds(x, y, INSIDE_M)), "")
+        if entered:
+            return entered
+        if before in self.areas and self.areas[before].holds(x, y, -OUTSIDE_M):
             return before
         return next((name for name, area in self.areas.items() if area.holds(x, y)), "")
 

@@ -14,7 +14,7 @@ from typing import Any
 from polaris_nl.model.errors import RunError
 
 INSTALL = 'pip install "polaris-nl[ros]"'
-INTERFACES = "scripts/build-interfaces"
+INTERFACES = "python scripts/build_interfaces.py (in a checkout: make robot)"
 """What builds the interface packages that no wheel brings."""
 OPTIONAL = ("control_msgs", "nav2_msgs", "tf2_msgs", "visualization_msgs")
 
@@ -62,6 +62,15 @@ def installation(environment: Mapping[str, str] = os.environ) -> Installation:
     prefixes = [p for p in environment.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if p]
     sourced = any(place.is_relative_to(p) for p in prefixes)
     return Installation(sourced, distribution if sourced else "jazzy", place)
+
+
+def stay_on_this_machine() -> None:
+    """Keeps ROS to the loopback device unless the environment says otherwise; to be called before the start.
+
+    A robot is on the network, and reached as the environment is set up for it; what is simulated runs here.
+    """
+    if not {"ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_LOCALHOST_ONLY"} & os.environ.keys():
+        os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
 
 
 def load_rclpy() -> ModuleType:

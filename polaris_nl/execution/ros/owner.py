@@ -7,6 +7,7 @@ the callbacks; each wait in it has a deadline, since a robot that was killed nev
 
 from __future__ import annotations
 
+import contextlib
 import queue
 import threading
 import time
@@ -90,6 +91,7 @@ class Owner:
         name: the node's name.
         set_up: is called in the thread with the node before anything else.
         watch: is called in the thread at every turn, some hundred times a second.
+        last: is called in the thread when it ends by a fault of its own, before the node goes.
 
     Raises:
         RunError: rclpy is missing, or can't start.
@@ -100,11 +102,13 @@ class Owner:
         name: str,
         set_up: Callable[[Any], None],
         watch: Callable[[], None] = lambda: None,
+        last: Callable[[], None] = lambda: None,
     ) -> None:
         self._rclpy = load_rclpy()
         self._name = name
         self._set_up = set_up
         self._watch = watch
+        self._last = last
         self._jobs: list[_Running] = []
         self._inbox: queue.SimpleQueue[_Running] = queue.SimpleQueue()
         self._closing = threading.Event()
@@ -117,6 +121,11 @@ class Owner:
         except BaseException:
             self._closing.set()
             raise
+
+    @property
+    def alive(self) -> bool:
+        """Whether the thread runs."""
+        return self._thread.is_alive() and not self._closing.is_set()
 
     def start(self, job: Coroutine[None, None, T]) -> Handed[T]:
         """Hands a coroutine over; from any thread. Cancelling what is returned ends it at its next wait."""
@@ -182,6 +191,11 @@ class Owner:
                 executor.spin_once(timeout_sec=TURN_S)
                 self._watch()
                 self._advance()
+        except BaseException:
+            with contextlib.suppress(Exception):
+                self._last()
+                executor.spin_once(timeout_sec=0.1)
+            raise
         finally:
             self._executor = None
             executor.remove_node(node)

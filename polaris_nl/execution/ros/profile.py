@@ -15,7 +15,7 @@ SCHEMA = "polaris-robot/1"
 FOLDER = Path(__file__).parent / "profiles"
 TOPICS = (
     "cmd_vel", "joint_states", "joint_pose_cmd", "odom", "battery", "mode", "is_homed",
-    "is_runstopped", "is_streaming_position", "tf", "markers", "perceived", "heard", "say", "said",
+    "is_runstopped", "is_streaming_position", "tf", "tf_static", "markers", "perceived", "heard", "say", "said",
     "skill", "skill_result",
 )  # fmt: skip
 SERVICES = ("navigation_mode", "position_mode", "streaming", "stop", "runstop")
@@ -28,10 +28,19 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, slots=True)
 class Arm:
-    """Where the arm goes to reach and when it drives; lift and extension in metres, and how exactly."""
+    """The arm, in metres.
 
+    Attributes:
+        side_m: from the middle of the base to the fingers, to the right, with the arm drawn in.
+        base_m: the height of the fingers above the floor with the lift down.
+        reach_lift: where the lift goes to reach what has no known height.
+        stowed_lift, stowed_extension: where the arm goes before the base drives.
+        tolerance: how far off a joint may stay.
+    """
+
+    side_m: float
+    base_m: float
     reach_lift: float
-    reach_extension: float
     stowed_lift: float
     stowed_extension: float
     tolerance: float
