@@ -30,6 +30,7 @@ ROBOT, FURNITURE, THING = 1, 2, 4
 """Kinds of geoms, as bits: robot and things touch furniture, and things each other."""
 
 _URDF = "SE3/stretch_description_SE3_eoa_wrist_dw3_tool_sg3.urdf"
+_SOLID = ("caster_link", "link_mast", "link_head")
 _WHEELS = ("joint_left_wheel", "joint_right_wheel")
 _SEGMENTS = tuple(f"joint_arm_l{n}" for n in range(4))
 _FINGERS = ("joint_gripper_finger_left", "joint_gripper_finger_right")
@@ -71,7 +72,9 @@ def robot_spec(start: Pose) -> Any:
     for body in spec.bodies:
         body.gravcomp = 0.0 if body.name in ("world", BASE_BODY) else 1.0
     for geom in spec.geoms:
-        geom.contype, geom.conaffinity = ROBOT, FURNITURE
+        # Grasps are attached, so what grasps needn't touch: only base, mast and head bump into furniture.
+        solid = geom.parent.name in _SOLID
+        geom.contype, geom.conaffinity = (ROBOT, FURNITURE) if solid else (0, 0)
     _put_on_wheels(spec)
     _actuate(spec)
     return spec
@@ -92,8 +95,6 @@ def _quietened(urdf: str) -> str:
 def _put_on_wheels(spec: Any) -> None:
     for side in ("left", "right"):
         wheel = spec.body(f"link_{side}_wheel")
-        for geom in wheel.geoms:
-            geom.contype = geom.conaffinity = 0
         wheel.add_geom(
             name=f"{side}_tyre",
             type=mujoco.mjtGeom.mjGEOM_CYLINDER,
@@ -114,9 +115,7 @@ def _put_on_wheels(spec: Any) -> None:
         geom.friction = [0.0, 0.0, 0.0]
         geom.priority = 1
         geom.condim = 1
-    for geom in spec.body(BASE_BODY).geoms:
-        # The hull of the base would touch the floor.
-        geom.contype = geom.conaffinity = 0
+    # The hull of the base would touch the floor.
     spec.body(BASE_BODY).add_geom(
         name="bumper",
         type=mujoco.mjtGeom.mjGEOM_CYLINDER,

@@ -6,6 +6,7 @@ own, which runs `speed` times as fast.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -27,6 +28,8 @@ from polaris_nl.planning.mutexes import find_mutexes
 STEP_S = 0.02
 LAG_S = 0.5
 """If the machine falls behind by more than this, simulated time is dropped instead."""
+CATCH_UP_S = 0.05
+"""The most that is caught up with at a time, so that the driver's topics don't fall silent over it."""
 SPEECH_S = (0.5, 0.05, 4.0)
 """How long saying something takes: at least, for each character, at most."""
 
@@ -121,6 +124,7 @@ class Simulator:
         self.navigation: Navigation | None = None
         self._people = People(self.scene, options.people, mutexes, options.seed)
         self._speed = options.speed
+        self._most = max(3, math.ceil(CATCH_UP_S * options.speed / STEP_S))
         self._now: float | None = None
         self._owed = 0.0
         self._wall = self._simulated = 0.0
@@ -135,8 +139,10 @@ class Simulator:
         passed = 0.0 if self._now is None else max(now - self._now, 0.0)
         self._now = now
         self._wall += passed
-        self._owed += min(passed, LAG_S) * self._speed
-        while self._owed >= STEP_S:
+        self._owed = min(self._owed + passed * self._speed, LAG_S * self._speed)
+        for _ in range(self._most):
+            if self._owed < STEP_S:
+                break
             self._owed -= STEP_S
             self._advance(now)
         happened, self._happened = self._happened, Happened()
