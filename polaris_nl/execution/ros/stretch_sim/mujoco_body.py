@@ -118,6 +118,8 @@ class MujocoBody:
         if self._held is not None:
             self.data.eq_active[self._weld(self._held)] = 0
             self._touchable(self._held, True)
+            # What lies still is left alone by the solver, also in the air; a touch makes it fall.
+            self.data.joint(f"free-{self._alias[self._held]}").qvel[2] = -0.01
         self._held = name
         if name is None:
             return
