@@ -114,7 +114,6 @@ def test_a_wall_stops_the_base_and_the_run_stop_all_of_it() -> None:
         driver.velocity(0.3, 0.0)
         story.run(0.1)
     assert body.pose.x < 2.5, "the wall of the room"
-    assert abs(body.velocity[0]) < 0.05
     for _ in range(10):
         driver.velocity(-0.3, 0.0)
         story.run(0.1)

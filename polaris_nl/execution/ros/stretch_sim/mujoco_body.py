@@ -27,10 +27,14 @@ from polaris_nl.execution.ros.stretch_sim.mujoco_robot import (
     controls,
     measured,
     modelled,
+    rolled,
     wheel_speeds,
 )
 from polaris_nl.execution.ros.stretch_sim.mujoco_world import AWAY, SPARES, furnished
 from polaris_nl.model.world import World
+
+BRAKING = 2.5
+"""How much harder the base brakes than it speeds up, when it is told to stop: 1.5 m/s2."""
 
 
 class MujocoBody:
@@ -58,6 +62,7 @@ class MujocoBody:
         self._commanded = dict(HOME)
         self._wanted = (0.0, 0.0)
         self._driven = (0.0, 0.0)
+        self._brakes = False
         self._owed = 0.0
         for name, value in controls(HOME).items():
             self.data.joint(name).qpos[0] = value
@@ -74,12 +79,11 @@ class MujocoBody:
 
     @property
     def velocity(self) -> tuple[float, float]:
-        """Of the base: m/s forwards, rad/s to the left; what is slower than its trembling is nought."""
-        vx, vy = self.data.qvel[:2]
-        yaw = self.pose.yaw
-        linear = float(vx * math.cos(yaw) + vy * math.sin(yaw))
-        angular = float(self.data.qvel[5])
-        return linear if abs(linear) > 2e-3 else 0.0, angular if abs(angular) > 5e-3 else 0.0
+        """By its wheels, as the robot measures it: m/s forwards, rad/s to the left; trembling is nought."""
+        linear, angular = rolled(
+            *(float(self.data.joint(f"joint_{side}_wheel").qvel[0]) for side in ("left", "right"))
+        )
+        return linear if abs(linear) > 5e-3 else 0.0, angular if abs(angular) > 2e-2 else 0.0
 
     @property
     def joints(self) -> Mapping[str, float]:
@@ -94,14 +98,16 @@ class MujocoBody:
     def drive(self, linear: float, angular: float) -> None:
         """Sets the velocity that the base is to have."""
         self._wanted = clipped_velocity(linear, angular)
+        self._brakes = self._brakes and self._wanted == (0.0, 0.0)
 
     def aim(self, joint: str, position: float) -> None:
         """Sets the position that a joint is to have."""
         self._goals[joint] = JOINTS[joint].clip(position)
 
     def hold(self) -> None:
-        """Stops everything where it is; the base brakes as hard as its tyres can."""
-        self._wanted = self._driven = (0.0, 0.0)
+        """Stops everything where it is; the base brakes as hard as it can without tipping forward."""
+        self._wanted = (0.0, 0.0)
+        self._brakes = True
         self._goals = dict(self._commanded)
 
     def step(self, seconds: float) -> None:
@@ -145,9 +151,10 @@ class MujocoBody:
             self._there.discard(name)
 
     def _ramp(self, seconds: float) -> None:
+        most = seconds * (BRAKING if self._brakes else 1.0)
         self._driven = (
-            towards(self._driven[0], self._wanted[0], LINEAR_ACCELERATION * seconds),
-            towards(self._driven[1], self._wanted[1], ANGULAR_ACCELERATION * seconds),
+            towards(self._driven[0], self._wanted[0], LINEAR_ACCELERATION * most),
+            towards(self._driven[1], self._wanted[1], ANGULAR_ACCELERATION * most),
         )
         for name, joint in JOINTS.items():
             self._commanded[name] = towards(

@@ -102,6 +102,8 @@ def _put_on_wheels(spec: Any) -> None:
             contype=ROBOT,
             conaffinity=FURNITURE,
             friction=[1.2, 0.005, 0.0001],
+            solref=[0.008, 1.0],
+            solimp=[0.95, 0.99, 0.001, 0.5, 2.0],
             mass=0.0,
             rgba=[0.15, 0.15, 0.15, 1.0],
         )
@@ -151,6 +153,12 @@ def wheel_speeds(linear: float, angular: float) -> dict[str, float]:
         "joint_left_wheel": (linear - half) / WHEEL_RADIUS_M,
         "joint_right_wheel": (linear + half) / WHEEL_RADIUS_M,
     }
+
+
+def rolled(left: float, right: float) -> tuple[float, float]:
+    """The velocity of the base, in m/s and rad/s, by the speeds of its wheels, in rad/s."""
+    linear = (left + right) / 2 * WHEEL_RADIUS_M
+    return linear, (right - left) * WHEEL_RADIUS_M / WHEEL_SEPARATION_M
 
 
 def controls(joints: Mapping[str, float]) -> dict[str, float]:

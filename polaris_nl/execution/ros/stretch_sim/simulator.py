@@ -229,8 +229,6 @@ class Simulator:
         seconds = min(least + each * len(saying.text), most)
         self._sayings.append((self.time + seconds, saying, lies))
 
-    # Faults
-
     def strike(self, fault: Fault) -> None:
         """Makes something go wrong.
 
@@ -240,33 +238,8 @@ class Simulator:
         self.struck += 1
         if fault.kind in GOAL_FAULTS:
             self.mishaps.add(fault)
-            return
-        until = (self._now or 0.0) + fault.seconds
-        match fault.kind:
-            case "event":
-                self.scene.make_true(fault.literals)
-            case "move":
-                self.scene.move(fault.object, fault.to)
-            case "add":
-                self.scene.add(fault.object, fault.to)
-            case "remove":
-                self.scene.remove(fault.object)
-            case "blind":
-                self.mishaps.blind_until = until
-            case "stale":
-                self.mishaps.stale_until = until
-            case "silent":
-                self.mishaps.silent_until = until
-            case "unhomed" | "homed":
-                self.driver.homed = fault.kind == "homed"
-            case "battery":
-                self.driver.voltage = fault.value
-            case "runstop":
-                self.driver.runstop(bool(fault.value))
-            case "clock-jump":
-                self.mishaps.clock_s += fault.seconds
-            case _:
-                self.mishaps.clear()
+        elif not self.mishaps.strike(fault, self._now or 0.0):
+            self._strike(fault)
 
     # What takes its time
 
@@ -317,3 +290,20 @@ class Simulator:
     def _with(self, person: str) -> bool:
         here = Literal("person-in", (person, self.scene.region))
         return here in self.scene.state.facts
+
+    def _strike(self, fault: Fault) -> None:
+        match fault.kind:
+            case "event":
+                self.scene.make_true(fault.literals)
+            case "move":
+                self.scene.move(fault.object, fault.to)
+            case "add":
+                self.scene.add(fault.object, fault.to)
+            case "remove":
+                self.scene.remove(fault.object)
+            case "unhomed" | "homed":
+                self.driver.homed = fault.kind == "homed"
+            case "battery":
+                self.driver.voltage = fault.value
+            case "runstop":
+                self.driver.runstop(bool(fault.value))
