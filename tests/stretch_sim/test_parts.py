@@ -16,8 +16,9 @@ from polaris_nl.execution.ros.stretch_sim.driver import NAVIGATION, SILENCE_S, T
 from polaris_nl.execution.ros.stretch_sim.faults import Mishaps, parse_fault
 from polaris_nl.execution.ros.stretch_sim.floor import ROBOT_RADIUS_M, Floor, floor_of, read_map
 from polaris_nl.execution.ros.stretch_sim.joints import JOINTS, ROTATE, TRANSLATE
-from polaris_nl.execution.ros.stretch_sim.simulator import Options, Saying, Simulator
+from polaris_nl.execution.ros.stretch_sim.simulator import Options, Simulator
 from polaris_nl.execution.ros.stretch_sim.skills import Reply, Request
+from polaris_nl.execution.ros.stretch_sim.speech import Saying
 from polaris_nl.execution.ros.stretch_sim.trajectory import Waypoint
 from polaris_nl.model.errors import FormatError, RunError, UsageError
 from polaris_nl.model.formula import parse_literal

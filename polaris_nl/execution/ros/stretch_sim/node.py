@@ -22,9 +22,10 @@ from polaris_nl.execution.ros.stretch_sim.actions import Actions
 from polaris_nl.execution.ros.stretch_sim.driver import NAVIGATION, POSITION, TRAJECTORY, Answer
 from polaris_nl.execution.ros.stretch_sim.faults import parse_fault
 from polaris_nl.execution.ros.stretch_sim.joints import published
-from polaris_nl.execution.ros.stretch_sim.simulator import Saying, Simulator
+from polaris_nl.execution.ros.stretch_sim.simulator import Simulator
 from polaris_nl.execution.ros.stretch_sim.skills import Reply, Request
 from polaris_nl.execution.ros.stretch_sim.snapshot import snapshot
+from polaris_nl.execution.ros.stretch_sim.speech import Saying
 from polaris_nl.model.errors import PolarisError
 
 if TYPE_CHECKING:

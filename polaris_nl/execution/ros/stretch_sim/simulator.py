@@ -21,7 +21,7 @@ from polaris_nl.execution.ros.stretch_sim.people import Deed, People
 from polaris_nl.execution.ros.stretch_sim.perception import Cameras, Settings
 from polaris_nl.execution.ros.stretch_sim.scene import Scene, start_pose
 from polaris_nl.execution.ros.stretch_sim.skills import Reply, Request
-from polaris_nl.model.formula import Literal
+from polaris_nl.execution.ros.stretch_sim.speech import Saying, Speech
 from polaris_nl.model.world import World
 from polaris_nl.planning.mutexes import find_mutexes
 
@@ -30,10 +30,6 @@ LAG_S = 0.5
 """If the machine falls behind by more than this, simulated time is dropped instead."""
 CATCH_UP_S = 0.05
 """The most that is caught up with at a time, so that the driver's topics don't fall silent over it."""
-SPEECH_S = (0.5, 0.05, 4.0)
-"""How long saying something takes: at least, for each character, at most."""
-
-
 MakeBody = Callable[[World, Layout, Floor, Pose], Body]
 """Makes a body in a world, with its start."""
 
@@ -55,15 +51,6 @@ class Options:
     noise_m: float = 0.0
     dropout: float = 0.0
     homed: bool = True
-
-
-@dataclass(frozen=True, slots=True)
-class Saying:
-    """Something the robot says: to whom, which message, in what words."""
-
-    person: str
-    message: str
-    text: str
 
 
 @dataclass(slots=True)
@@ -129,7 +116,7 @@ class Simulator:
         self._owed = 0.0
         self._wall = self._simulated = 0.0
         self._task: _Task | None = None
-        self._sayings: list[tuple[float, Saying, bool]] = []
+        self._speech = Speech(self.scene, self.mishaps)
         self._happened = Happened()
 
     # Time
@@ -173,7 +160,7 @@ class Simulator:
         self.body.step(STEP_S)
         self.scene.step(STEP_S)
         self._work()
-        self._speak()
+        self._happened.said += self._speech.step(self.time)
         self._happened.deeds += self._people.step(self.time)
 
     # Goals
@@ -222,12 +209,7 @@ class Simulator:
 
     def say(self, saying: Saying) -> None:
         """Begins to say something."""
-        least, each, most = SPEECH_S
-        if self.mishaps.take("reject", "say") or self.mishaps.take("never", "say"):
-            return
-        lies = self.mishaps.take("lie", "say") is not None
-        seconds = min(least + each * len(saying.text), most)
-        self._sayings.append((self.time + seconds, saying, lies))
+        self._speech.say(saying, self.time)
 
     def strike(self, fault: Fault) -> None:
         """Makes something go wrong.
@@ -273,23 +255,6 @@ class Simulator:
             if not reason:
                 skills.effect(task.request, self.scene)
         task.done(Reply(task.request.id, not reason, reason))
-
-    def _speak(self) -> None:
-        due = [s for s in self._sayings if s[0] <= self.time]
-        self._sayings = [s for s in self._sayings if s[0] > self.time]
-        for _, saying, lies in due:
-            heard = saying.person not in self.scene.people or self._with(saying.person)
-            if lies:
-                self._happened.said.append(saying)
-            elif heard:
-                told = Literal("alerted-to", (saying.person, saying.message))
-                if "alerted-to" in self.world.domain.predicates and saying.message:
-                    self.scene.make_true([told])
-                self._happened.said.append(saying)
-
-    def _with(self, person: str) -> bool:
-        here = Literal("person-in", (person, self.scene.region))
-        return here in self.scene.state.facts
 
     def _strike(self, fault: Fault) -> None:
         match fault.kind:
