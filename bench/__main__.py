@@ -7,7 +7,7 @@ import os
 import platform
 import sys
 
-from bench import command, language, planning, speech, tui
+from bench import command, language, planning, robot, speech, tui
 from bench.table import show
 
 PARTS = {
@@ -16,6 +16,7 @@ PARTS = {
     "speech": speech,
     "planning": planning,
     "tui": tui,
+    "robot": robot,
 }
 
 

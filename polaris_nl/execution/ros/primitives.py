@@ -115,7 +115,6 @@ class Primitives:
         if target is None:
             raise Refused(f"it doesn't know where {_spoken(arguments['to'])} is")
         if self._stands(target, 1.0):
-            self._driver.accepted()
             return
         await self._mode("navigation", "navigation_mode")
         if "navigate" in self._driver.actions and self._driver.offers("navigate"):
@@ -198,7 +197,6 @@ class Primitives:
         if wrong:
             raise Refused(wrong)
         if self._at(joints):
-            self._driver.accepted()
             return
         await self._mode("position", "position_mode")
         seconds = self._profile.times.trajectory

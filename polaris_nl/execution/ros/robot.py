@@ -189,7 +189,8 @@ class StretchRobot:
 
     def _health_now(self, now: float) -> Health:
         if not self._owner_alive():
-            return Health("fault", "the link to the robot broke; see: polaris-nl doctor")
+            why = f" ({self._owner.failure})" if self._owner.failure else ""
+            return Health("fault", f"the link to the robot broke{why}; start the run again")
         return health_of(self._senses.vitals, now, self._profile.safety)
 
     def _owner_alive(self) -> bool:

@@ -51,7 +51,7 @@ def health_of(vitals: Vitals, now: float, limits: Safety) -> Health:
     if vitals.voltage is not None and vitals.voltage < limits.battery_v:
         return Health("battery")
     if vitals.mode in BUSY_MODES:
-        text = f"the robot is busy with itself ({vitals.mode}); wait until it is done"
+        text = f"the robot is in {vitals.mode} mode and takes no commands; wait until it is done"
         return Health("mode", text)
     return READY
 
