@@ -193,7 +193,7 @@ class MockDriver(Node):
             markers.append(marker)
         self.send("markers", MarkerArray(markers=markers))
         seconds = stamp.sec + stamp.nanosec * 1e-9
-        told = ("open", "is-full", "is-clean", "has", "holding")
+        told = ("open", "is-full", "is-clean", "has", "holding", "acknowledged", "dismissed")
         shown = [f for f in self.state.facts if f.predicate in told]
         if self.lasts("flicker"):
             shown += [x if self.ticks // 3 % 2 else x.negation for x in self.wavering]
