@@ -44,7 +44,9 @@ def main() -> None:
                 order, resume=resumable(Path(given["resume"]), automaton, plan, planner)
             )
         clock = RealClock()
-        connect = connection(profile_for("stretch-sim"), order, clock)
+        profile = profile_for("stretch-sim")
+        safety = replace(profile.safety, heartbeat_s=given["heartbeat_s"])
+        connect = connection(replace(profile, safety=safety), order, clock)
         run_on(connect, clock, order, confirmed=True, show=show)
 
 
