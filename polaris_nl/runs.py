@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import contextlib
 from collections.abc import Callable, Iterable, Mapping
+from contextlib import closing, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -11,18 +11,27 @@ from polaris_nl.automaton.automaton import Automaton
 from polaris_nl.automaton.program import Program, program_json
 from polaris_nl.execution.backend import Robot
 from polaris_nl.execution.clock import Clock, RealClock, VirtualClock
+from polaris_nl.execution.durations import LEARNED_FROM
 from polaris_nl.execution.durations_file import learn
-from polaris_nl.execution.events import Event, Failed, Heard, Planned, Understood
+from polaris_nl.execution.events import (
+    Event,
+    Failed,
+    Heard,
+    Planned,
+    RunStarted,
+    Understood,
+)
 from polaris_nl.execution.replanner import InlineReplanner, Replanner, ThreadedReplanner
 from polaris_nl.execution.resuming import ResumePoint, resume_point
 from polaris_nl.execution.runner import RunResult, run
 from polaris_nl.execution.settings import RunSettings
-from polaris_nl.execution.simulation import SimulatedRobot, SimulationSettings
+from polaris_nl.execution.simulation import SimulatedRobot
+from polaris_nl.execution.simulation_settings import SimulationSettings
 from polaris_nl.execution.state import HumanCommand, RunPlan
 from polaris_nl.logs.paths import new_log_path
 from polaris_nl.logs.reader import read_log
 from polaris_nl.logs.writer import LogWriter, attachments_of
-from polaris_nl.model.errors import FileError
+from polaris_nl.model.errors import FileError, RunError
 from polaris_nl.planning.plan_json import plan_json
 from polaris_nl.planning.planner import Planner
 from polaris_nl.planning.result import BranchingPlan
@@ -89,27 +98,28 @@ def run_on(
         RunError: there is no yes, nothing to run, or a robot that can't do it; nothing has moved.
         LogError: the log can't be made.
     """
-    planner = order.planner
-    now = clock.now()
+    planner, now = order.planner, clock.now()
     path = order.log or new_log_path(planner.world.name)
     plan = RunPlan(order.automaton, order.plan, planner.world, planner.wording, order.settings)
-    with LogWriter(path, _attachments(order)) as log:
-        happened: list[Event] = []
+    kept: list[Event] = []
+    try:
+        with LogWriter(path, _attachments(order)) as log:
 
-        def sink(event: Event) -> None:
-            happened.append(event)
-            sound = not log.failure
-            log.write(event)
-            show(event)
-            if sound and log.failure:
-                show(Failed(time=event.time, text=log.failure, what="log"))
+            def sink(event: Event) -> None:
+                sound = not log.failure
+                log.write(event)
+                show(event)
+                if isinstance(event, (RunStarted, *LEARNED_FROM)):
+                    kept.append(event)
+                if sound and log.failure:
+                    show(Failed(time=event.time, text=log.failure, what="log"))
 
-        for event in _before(order, now):
-            log.write(event)
-        replanner = _replanner(planner, clock)
-        try:
-            robot = connect(log, sink, now)
-            try:
+            for event in _before(order, now):
+                log.write(event)
+            with (
+                closing(_replanner(planner, clock)) as replanner,
+                closing(connect(log, sink, now)) as robot,
+            ):
                 result = run(
                     plan,
                     robot,
@@ -120,14 +130,14 @@ def run_on(
                     replanner=replanner,
                     resume=order.resume,
                 )
-            finally:
-                robot.close()
-        finally:
-            replanner.close()
-            if not isinstance(clock, VirtualClock):
-                # It serves later plans alone; that it can't be kept is no matter of this run.
-                with contextlib.suppress(FileError):
-                    learn(planner.world, happened)
+    except RunError:
+        if not kept:
+            path.unlink(missing_ok=True)  # Of a run that never began there is nothing to read.
+        raise
+    if not isinstance(clock, VirtualClock):
+        # It serves later plans alone; that it can't be kept is no matter of this run.
+        with suppress(FileError):
+            learn(planner.world, kept)
     return RunReport(result, path, log.failure)
 
 

@@ -15,6 +15,8 @@ from polaris_nl.execution.events import Event, GoalConfirmed, GoalSent, Replanne
 from polaris_nl.planning.costs import MOST_EXTRA, Extra
 
 SCHEMA = "polaris-durations/1"
+LEARNED_FROM = (GoalSent, GoalConfirmed, Replanned)
+"""The events that tell how long actions took."""
 MOST_ACTIONS = 500
 MOST_S = 600.0
 LAST_RUNS = 5

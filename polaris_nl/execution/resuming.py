@@ -140,13 +140,17 @@ def _after(state: ExecutorState, event: Event, plan: BranchingPlan) -> ExecutorS
         case TransitionTaken():
             return state.towards(plan.segments[event.target], _literals(event.when))
         case GoalSent():
+            # The plan that was carried out, which needn't be the one that is made of the program now.
+            state = state.on_another_way(tuple(map(parse_action, event.plan)))
             return replace(state, goal=event.goal, goal_literals=_literals(event.literals))
         case GoalConfirmed():
             return state.after_actions(1, state.goal_literals, plan.segments[state.segment])
         case Skipped():
-            return state.after_actions(
-                len(event.actions), _literals(event.literals), plan.segments[state.segment]
-            )
+            saved = tuple(map(parse_action, event.actions))
+            rest = state.actions[state.done_actions + len(saved) :]
+            state = state.on_another_way(saved + rest)
+            segment = plan.segments[state.segment]
+            return state.after_actions(len(saved), _literals(event.literals), segment)
         case Replanned() if event.segment:
             return state.on_another_way(tuple(map(parse_action, event.after)))
         case CheckpointReached():

@@ -83,6 +83,8 @@ def run(
         raise RunError(f"The run doesn't start: {observation.health.words}.")
     state = replace(resume.state if resume else ExecutorState(), now=started, since=started)
     sink(_started(plan, robot, observation, resume, started))
+    if resume is not None:
+        robot.command(StopRobot())  # It may still be at the goal of an executor that is gone.
     going = _Going(plan, robot, clock, sink, commands, replanner or NoReplanner())
     return going.to_the_end(state, observation)
 

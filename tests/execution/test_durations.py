@@ -22,7 +22,8 @@ from polaris_nl.execution.durations_file import (
 )
 from polaris_nl.execution.events import Event, GoalConfirmed, GoalSent, Replanned
 from polaris_nl.execution.settings import RunSettings
-from polaris_nl.execution.simulation import SimulatedRobot, SimulationSettings
+from polaris_nl.execution.simulation import SimulatedRobot
+from polaris_nl.execution.simulation_settings import SimulationSettings
 from polaris_nl.model.errors import FormatError
 from polaris_nl.model.formula import Literal
 from polaris_nl.model.world_file import load_world

@@ -125,6 +125,20 @@ def test_a_halted_run_goes_on_once_things_are_put_right(hasty_dishes: Case) -> N
     assert result.checkpoints[: len(told.result.checkpoints)] == told.result.checkpoints
 
 
+def test_what_was_carried_out_counts_and_not_what_is_planned_now(serve: Case) -> None:
+    told = carry_out(serve, moved(5.0, "(is-full tray)"))
+    segment = serve.plan.segments["c1"]
+    other = replace(segment, actions=segment.actions[:0:-2])
+    plan = replace(serve.plan, segments={"c1": other})
+    for number, event in enumerate(told.events, 1):
+        if isinstance(event, GoalSent | GoalConfirmed):
+            before = told.events[:number]
+            state = resume_point(before, serve.automaton, plan, serve.world).state
+            assert [str(a) for a in state.actions[: state.done_actions]] == done_in(before)
+            if isinstance(event, GoalSent):
+                assert str(state.action) == event.action
+
+
 def test_what_can_not_go_on_is_refused_with_the_reason(lunch: Case, serve: Case) -> None:
     whole = carry_out(lunch).events
 

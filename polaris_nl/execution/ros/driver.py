@@ -156,7 +156,7 @@ class Driver:
         await self._last_goal_ended(what)
         handle = await self._sent(client, goal, what)
         if not handle.accepted:
-            raise Refused(f"it refuses to {what} just now")
+            raise Refused(f"it refuses {what} just now")
         self.accepted()
         self.open_goals.append(handle)
         future = handle.get_result_async()
@@ -171,7 +171,7 @@ class Driver:
         status = interface("action_msgs/msg/GoalStatus")
         if answer.status != status.STATUS_SUCCEEDED:
             told = str(getattr(answer.result, "error_string", "")).strip().rstrip(".")
-            raise Refused(told or f"it gave up to {what}")
+            raise Refused(told or f"it gave up {what}")
         return answer.result
 
     async def _sent(self, client: Any, goal: Any, what: str) -> Any:
