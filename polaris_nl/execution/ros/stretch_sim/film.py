@@ -55,8 +55,13 @@ class Film:
         self.frames = 0
         if not path.parent.is_dir():
             raise RunError(f"There is no folder {path.parent} to draw into; make it first.")
+        self._begun = threading.Event()
         self._thread = threading.Thread(target=self._work, name="film", daemon=True)
         self._thread.start()
+
+    def begin(self) -> None:
+        """Waits until it can draw (or has found that it can't)."""
+        self._begun.wait(CLOSE_S)
 
     def show(self, seconds: float, moment: Snapshot) -> None:
         """Draws a moment, unless it is still busy with the one before.
@@ -92,12 +97,15 @@ class Film:
     def _work(self) -> None:
         try:
             painter = self._make_painter()
+            self._begun.set()
             try:
                 self._draw(painter)
             finally:
                 painter.close()
         except Exception as error:  # Whatever fails in drawing must not end the simulation.
             self._problem = f"The picture {self._path} couldn't be drawn ({error})."
+        finally:
+            self._begun.set()
 
     def _draw(self, painter: Draws) -> None:
         if self._path.suffix == ".png":

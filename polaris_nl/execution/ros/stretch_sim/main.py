@@ -72,6 +72,8 @@ def serve(order: Order, ready: Callable[[Ready], None]) -> Closing:
     make_body = None if order.kinematic else _physics()
     simulator = Simulator(order.world, time.time(), order.options, make_body)
     film = _film(order, simulator)
+    if film is not None:
+        film.begin()
     rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
     try:
         node = StretchNode(simulator, film)

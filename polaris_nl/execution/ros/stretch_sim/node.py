@@ -34,6 +34,8 @@ if TYPE_CHECKING:
 LOOP_S = 0.01
 PUBLISH_S = 1 / 30
 SENSE_S = 0.1
+WORDS_S = 8.0
+"""How long a film shows what was said or done, in simulated seconds."""
 TOOL = "eoa_wrist_dw3_tool_sg3"
 _SENDING = {
     "joints": (JointState, "/stretch/joint_states"),
@@ -80,6 +82,7 @@ class StretchNode(Node):  # type: ignore[misc]
         self._frozen_stamp: float | None = None
         self._film = film
         self._last_words = ""
+        self._words_at = 0.0
         self.create_timer(LOOP_S, self._loop)
         self.create_timer(PUBLISH_S, self._publish)
         self.create_timer(SENSE_S, self._sense)
@@ -92,16 +95,19 @@ class StretchNode(Node):  # type: ignore[misc]
         stamp = self.simulator.stamp(time.time())
         for saying in happened.said:
             said = {"person": saying.person, "message": saying.message, "text": saying.text}
-            self._last_words = f"robot: {saying.text}"
+            self._note(f"robot: {saying.text}")
             self._out["said"].publish(messages.text({**said, "heard": True, "stamp": stamp}))
         for deed in happened.deeds:
-            self._last_words = f"a person: {deed.action.name}"
+            self._note(f"a person: {deed.action.name}")
             self.get_logger().info(f"a person does this: {deed.action.name}")
             if not self.simulator.cameras.hears(deed.speaker):
                 continue
             for literal in deed.spoken:
                 heard = {"literal": str(literal), "person": deed.speaker, "stamp": stamp}
                 self._out["heard"].publish(messages.text(heard))
+
+    def _note(self, words: str) -> None:
+        self._last_words, self._words_at = words, self.simulator.time
 
     def _publish(self) -> None:
         now = time.time()
@@ -122,7 +128,8 @@ class StretchNode(Node):  # type: ignore[misc]
     def _sense(self) -> None:
         now = time.time()
         if self._film is not None:
-            moment = snapshot(self.simulator, self._last_words)
+            recent = self.simulator.time - self._words_at < WORDS_S
+            moment = snapshot(self.simulator, self._last_words if recent else "")
             self._film.show(self.simulator.wall, moment)
         self._publish_truth(now)
         mishaps = self.simulator.mishaps

@@ -25,7 +25,8 @@ WIDTH, HEIGHT = 640, 480
 CAPTION = 28
 LABEL_NEAR_M = 3.2
 _AHEAD_M = 0.4
-_INK, _PAPER = (20, 22, 26), (255, 255, 255)
+ROBOT_LABEL = "robot"
+_INK, _PAPER, _ROBOT = (20, 22, 26), (255, 255, 255), (255, 176, 64)
 _FOV_Y = math.radians(45)
 
 Label = tuple[str, tuple[float, float, float]]
@@ -81,11 +82,14 @@ class Painter:
             where = self._project(at)
             if where is None:
                 continue
+            half = draw.textlength(text, self._font) / 2 + 4
+            where = min(max(where[0], half), WIDTH - half), min(max(where[1], 10), HEIGHT - 10)
             box = draw.textbbox(where, text, self._font, anchor="mm")
             if any(_overlap(box, other) for other in taken):
                 continue
             taken.append(box)
-            draw.rectangle((box[0] - 3, box[1] - 2, box[2] + 3, box[3] + 2), fill=_PAPER)
+            paper = _ROBOT if text == ROBOT_LABEL else _PAPER
+            draw.rectangle((box[0] - 3, box[1] - 2, box[2] + 3, box[3] + 2), fill=paper)
             draw.text(where, text, _INK, self._font, anchor="mm")
         return view
 
@@ -124,7 +128,7 @@ class Painter:
                 yield name, (x, y, z + 0.12)
 
     def _regions(self, moment: Snapshot) -> Iterator[Label]:
-        yield "robot", (moment.pose.x, moment.pose.y, 1.6)
+        yield ROBOT_LABEL, (moment.pose.x, moment.pose.y, 1.6)
         for name, person in moment.people.items():
             yield name, (person.x, person.y, 1.9)
         for name, area in self._layout.areas.items():
@@ -155,7 +159,7 @@ class Painter:
         top = max(a.top for a in layout.areas.values())
         self._far.lookat[:] = ((left + right) / 2, (bottom + top) / 2 - 0.3, 0.0)
         across, along = (right - left) / (WIDTH / HEIGHT), (top - bottom) * 0.95
-        self._far.distance = 0.58 * max(across, along) / math.tan(_FOV_Y / 2) + 0.5
+        self._far.distance = 0.64 * max(across, along) / math.tan(_FOV_Y / 2) + 0.5
         self._far.elevation = -68
         self._far.azimuth = 90
 
