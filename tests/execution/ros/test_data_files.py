@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from polaris_nl.cli import main
 from polaris_nl.execution.ros.profile import FOLDER, profile_for, profile_names, read_profile
 from polaris_nl.execution.ros.skills import PRIMITIVES, read_skills, skills_for
 from polaris_nl.model.data import shipped_domains
@@ -141,3 +142,27 @@ def test_skills_of_another_domain_are_refused(tmp_path: Path) -> None:
     domain = read_domain(shipped_domains()["tidying"])
     with pytest.raises(FormatError, match="skills for caregiving, not for tidying"):
         read_skills(shipped_domains()["caregiving"].with_name("skills.yaml"), domain)
+
+
+def test_check_knows_skills_and_profiles(capsys: pytest.CaptureFixture[str]) -> None:
+    skills = shipped_domains()["caregiving"].with_name("skills.yaml")
+    assert main(["check", str(skills), str(FOLDER / "stretch-3.yaml")]) == 0
+    told = capsys.readouterr()
+    assert "skills for caregiving, all right." in " ".join(told.out.split())
+    assert "a robot profile, Stretch 3, all right." in " ".join(told.out.split())
+    assert "Stretch 3 has no means for: place, close-container" in told.err
+    assert "simulated" not in told.err
+
+
+def test_check_tells_what_is_wrong_with_skills(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = shipped_domains()["tidying"].parent
+    shutil.copy(folder / "domain.pddl", tmp_path)
+    path = tmp_path / "skills.yaml"
+    path.write_text((folder / "skills.yaml").read_text().replace("do: grasp", "do: grab", 1))
+    assert main(["check", str(path)]) == 1
+    assert "no primitive grab. Did you mean grasp?" in capsys.readouterr().err
+    path.write_text("schema: polaris-skills/1\ndomain: tidying\nskills:\n  move: [{do: retract}]\n")
+    assert main(["check", str(path)]) == 0
+    assert "pick has no skill" in capsys.readouterr().err
