@@ -7,7 +7,7 @@ import os
 import platform
 import sys
 
-from bench import command, execution, language, planning, speech, tui
+from bench import command, execution, language, planning, robot, speech, tui
 from bench.table import show
 
 PARTS = {
@@ -17,6 +17,7 @@ PARTS = {
     "planning": planning,
     "execution": execution,
     "tui": tui,
+    "robot": robot,
 }
 
 
