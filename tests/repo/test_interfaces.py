@@ -70,6 +70,6 @@ def test_a_missing_compiler_is_named_with_a_way_out(
 ) -> None:
     monkeypatch.setenv("CXX", "no-such-compiler")
     with pytest.raises(
-        script.BuildError, match="no-such-compiler is missing.*install-system robot"
+        script.BuildError, match=r"no-such-compiler is missing.*install-system robot"
     ):
         script.build_environment()
