@@ -158,7 +158,8 @@ def test_the_run_stop_ends_all_motion_until_it_is_released(start: Start) -> None
     assert sim.velocity() == (0.0, 0.0)
 
 
-def test_stopping_ends_motion_but_not_goals(sim: Client) -> None:
+def test_stopping_ends_motion_but_not_goals(start: Start) -> None:
+    _, sim = start("--kinematic", "--people", "none", "--speed", "2")
     handle = sim.trajectory({"joint_lift": 1.0})
     sim.until(lambda: sim.joint("joint_lift") > 0.61, "the lift moves")
     assert sim.call("/stop_the_robot")[0]
