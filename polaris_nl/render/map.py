@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from polaris_nl.model.state import State
 from polaris_nl.model.world import Entity, World
-from polaris_nl.render.glyphs import ASCII, Glyphs, plain
+from polaris_nl.render.glyphs import ASCII, Glyphs, cells, plain
 from polaris_nl.render.layout import cut
 
 _ASPECT = 2.0
@@ -96,5 +96,12 @@ def _write(
             break
         last = line == bottom - 1 and offset < len(texts) - 1
         shown = f"{cut(text, room - 4, glyphs.more)} +{len(texts) - offset - 1}" if last else text
-        for column, sign in enumerate(cut(plain(shown), room, glyphs.more)):
-            grid[line][left + 1 + column] = sign
+        column = left + 1
+        for sign in cut(plain(shown), room, glyphs.more):
+            if not cells(sign):
+                grid[line][column - 1] += sign  # an accent belongs to the letter before it
+                continue
+            grid[line][column] = sign
+            for covered in range(column + 1, column + cells(sign)):
+                grid[line][covered] = ""  # a wide sign stands in this column, too
+            column += cells(sign)

@@ -1,41 +1,56 @@
 """The terminal application: one screen, one input line, the same sentences as everywhere.
 
-Keys become sentences, sentences go to the session in a thread of its own, and whatever comes back is a
-message here. Each message makes a new scene, and the panes are drawn from that by pure functions.
+Keys become actions or sentences, sentences go to the session in a thread of its own, and whatever comes
+back is a message here. Each message makes a new scene, and the panes are drawn from that by pure functions.
 """
 
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from pathlib import Path
 from typing import ClassVar
 
 from textual.app import App, ComposeResult
-from textual.binding import Binding, BindingType
 from textual.events import Resize
 from textual.message import Message
+from textual.widget import Widget
 
 from polaris_nl.answers import change_in_words
+from polaris_nl.automaton.automaton import START, Automaton
+from polaris_nl.automaton.program import write_program
 from polaris_nl.execution.state import HumanCommand
 from polaris_nl.logs.paths import new_log_path
-from polaris_nl.model.wording import PlainWording, Wording
-from polaris_nl.render.glyphs import glyphs_for
+from polaris_nl.model.errors import PolarisError
+from polaris_nl.model.state import Mutexes
+from polaris_nl.model.wording import PlainWording
+from polaris_nl.planning.result import BranchingPlan
+from polaris_nl.render.explanation import offers
+from polaris_nl.render.glyphs import ASCII, UNICODE, glyphs_for
+from polaris_nl.render.timeline import Stop, branch_stops
 from polaris_nl.session import Session
 from polaris_nl.snapshot import Answer, Snapshot
-from polaris_tui import styles
+from polaris_tui import messages as told
+from polaris_tui import stepping, styles
+from polaris_tui.actions import Keymap, Situation
+from polaris_tui.authoring import Desk
 from polaris_tui.board import Board
+from polaris_tui.completion import names_of
 from polaris_tui.conversation import Conversation
-from polaris_tui.keys import KEYS
-from polaris_tui.messages import Answered, Changed, Happened, RunOver, Told, Warmed
+from polaris_tui.deeds import Deeds, editor
+from polaris_tui.keeping import Leftover
+from polaris_tui.layout import TREE
+from polaris_tui.menus import Ask, Change, Menu
 from polaris_tui.pane import Pane
-from polaris_tui.phrases import Order, order_in, view_asked
-from polaris_tui.progress import Activity, Progress, advanced
-from polaris_tui.prompt import Prompt
+from polaris_tui.phrases import action_asked, order_in, view_asked
+from polaris_tui.progress import Progress, advanced
 from polaris_tui.running import Running
-from polaris_tui.transcript import Entry, Exchange, Transcript, answer_entries, event_entry
-from polaris_tui.views import Scene, View
+from polaris_tui.scene import Reading, Scene
+from polaris_tui.settings import Settings
+from polaris_tui.state import State
+from polaris_tui.styles import LOOKS, Look
+from polaris_tui.transcript import Entry, answer_entries, event_entry
 
 PATIENCE_S = 0.15
 """How long a new plan may take before the screen says that it is being made: most come sooner."""
@@ -43,6 +58,8 @@ END_S = 5.0
 """How long leaving waits for a run to stop, and for what the session is doing."""
 
 NO_FILE = "Nothing is saved without a program file; to keep this, start with: polaris-nl tui FILE"
+KEPT = "This program has no name yet, and is kept all the same; :save-as gives it one."
+LEFT = "An earlier session ended without a name for its program; :recover brings it back."
 NO_RUN = 'There is no run. F5, or "run it", starts one.'
 RUN_GOES_ON = "The run goes on with the program that was read out; this counts from the next run."
 STOPPED_FIRST = "You said stop before it began, so nothing runs."
@@ -54,270 +71,553 @@ class PolarisApp(App[int]):
 
     Args:
         session: program, language and planner; it belongs to the caller.
+        settings: the user's.
         live: runs go in real time; otherwise as fast as the machine can.
         logs: the folder for the logs of runs; the usual one by default.
+        kept: the program's file is not the user's, but one that keeps it until it has a name.
+        leftovers: what earlier sessions left unsaved.
+        log: a log to be opened at once.
+        talk: starts listening, where something can.
+        settings_file: where settings are, for what is said about them.
     """
 
     ENABLE_COMMAND_PALETTE = False
     CSS = styles.CSS
     HORIZONTAL_BREAKPOINTS = styles.BREAKPOINTS
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding(k.keys, k.action, k.does, show=False, priority=k.first) for k in KEYS if k.keys
-    ]
+    BINDINGS: ClassVar = []
 
-    def __init__(self, session: Session, *, live: bool = True, logs: Path | None = None) -> None:
+    def __init__(
+        self,
+        session: Session,
+        settings: Settings = Settings(),
+        *,
+        live: bool = True,
+        logs: Path | None = None,
+        kept: bool = False,
+        leftovers: Iterable[Leftover] = (),
+        log: Path | None = None,
+        talk: Callable[[], None] | None = None,
+        settings_file: str = "the settings",
+    ) -> None:
         super().__init__()
-        self.theme = styles.THEME
+        self.session = session
+        self.settings = settings
+        self.settings_file = settings_file
+        self.keymap: Keymap = settings.keymap
+        self.logs = logs
+        self.leftovers = tuple(leftovers)
         self.animation_level = "none"
-        self._session = session
         self._live = live
-        self._logs = logs
-        self._glyphs = glyphs_for()
-        self._wording: Wording = PlainWording(session.world)
-        self._progress = Progress(session.world.initial, activity="loading")
-        self._transcript = Transcript()
-        self._view: View = "plan"
-        self._current: Running | None = None
-        self._awaited: tuple[int, Answer] | None = None
-        self._stopped_at = 0  # The ticket of the last thing said before a stop.
-        self._leaving = False
+        self._first_log = log
+        self._talk = talk
+        glyphs = {"unicode": UNICODE, "ascii": ASCII}.get(settings.glyphs) or glyphs_for()
+        self.state = State(
+            glyphs,
+            LOOKS[settings.theme],
+            PlainWording(session.world),
+            Progress(session.world.initial, activity="loading"),
+            tree={"always": True, "never": False}.get(settings.tree),
+            kept=kept,
+        )
+        for theme in styles.themes():
+            self.register_theme(theme)
+        self.theme = self.state.look.theme
         self._unsubscribe: Callable[[], None] = lambda: None
-        self._conversation = Conversation(session, self._tell)
-        self._board = Board(self._glyphs)
+        self._focused_before: Widget | None = None
+        self._conversation = Conversation(session, self.tell)
+        self._deeds = Deeds(self, self.state)
+        self.board = Board(self, glyphs, self.state.look)
+        for action in self.keymap.actions:
+            if action.keys:
+                self._bindings.bind(
+                    ",".join(action.keys), f"do('{action.id}')", show=False, priority=action.first
+                )
 
     def compose(self) -> ComposeResult:
         """One screen."""
-        yield self._board
+        yield self.board
 
     def on_mount(self) -> None:
         """Shows the first screen; language and planner are loaded behind it."""
-        self._board.prompt.focus()
-        if self._session.path is None:
-            self._note(Entry(NO_FILE, tone="faint"))
-        self._draw()
-        self._unsubscribe = self._session.subscribe(lambda snapshot: self._tell(Changed()))
+        self.board.prompt.focus()
+        if self.session.path is None:
+            self.state.note(Entry(NO_FILE, tone="faint"))
+        elif self.state.kept:
+            self.state.note(Entry(KEPT, tone="faint"))
+        if self.leftovers:
+            self.state.note(Entry(LEFT))
+        self.draw()
+        self._unsubscribe = self.session.subscribe(lambda snapshot: self.tell(told.Changed()))
         self.call_after_refresh(self._conversation.start)
+        if self._first_log is not None:
+            self.open_log(self._first_log)
 
     def on_unmount(self) -> None:
         """Leaves no thread behind that still uses the session."""
         self._unsubscribe()
-        if self._current is not None:
-            self._current.command(HumanCommand("stop"))
-            self._current.wait(END_S)
+        if self.state.current is not None:
+            self.state.current.command(HumanCommand("stop"))
+            self.state.current.wait(END_S)
         self._conversation.end(END_S)
 
     # What the threads tell
 
-    def _tell(self, message: Message) -> None:
+    def tell(self, message: Message) -> None:
         """Sends a message from any thread; a screen that is gone already needs none."""
         with contextlib.suppress(RuntimeError):
             self.post_message(message)
 
-    def on_warmed(self, message: Warmed) -> None:
+    def on_warmed(self, message: told.Warmed) -> None:
         """Says things in the words of the domain from now on."""
-        self._progress = replace(self._progress, activity="")
+        self.state.progress = replace(self.state.progress, activity="")
         if message.failure:
-            self._note(Entry(message.failure, "! ", "bad"))
+            self.state.note(Entry(message.failure, "! ", "bad"))
         else:
-            self._wording = self._session.wording
-        self._draw()
+            self.state.wording = self.session.wording
+        self.draw()
 
     def on_changed(self) -> None:
         """Shows the newest program and plan."""
-        if self._session.snapshot.planning == "planning":
-            self.set_timer(PATIENCE_S, self._draw)
+        if self.session.snapshot.planning == "planning":
+            self.set_timer(PATIENCE_S, self._still_planning)
         else:
+            self.state.slow = False
             self._tell_news()
-            self._draw()
+            self.want_purpose()
+            self.draw()
 
-    def on_answered(self, message: Answered) -> None:
+    def _still_planning(self) -> None:
+        self.state.slow = self.session.snapshot.planning == "planning"
+        self.draw()
+
+    def on_answered(self, message: told.Answered) -> None:
         """Shows an answer, and does what it leaves to the screen."""
-        answer = message.answer
+        answer, state = message.answer, self.state
         command = answer.interpretation.command
+        before = state.awaited_plan
+        state.awaited_plan = answer.snapshot.plan
         entries = answer_entries(answer)
-        starts = answer.confirmed and not self._current and message.ticket > self._stopped_at
-        if command in ("stop", "pause", "resume") and not self._current:
+        starts = answer.confirmed and not state.current and message.ticket > state.stopped_at
+        if command in ("stop", "pause", "resume") and not state.current:
             entries = [Entry(NO_RUN)]
         elif answer.confirmed and not starts:
-            entries = [Entry(ONE_RUN if self._current else STOPPED_FIRST, "! ")]
-        elif self._current and answer.snapshot.automaton != self._current.snapshot.automaton:
+            entries = [Entry(ONE_RUN if state.current else STOPPED_FIRST, "! ")]
+        elif state.current and answer.snapshot.automaton != state.current.snapshot.automaton:
             entries.append(Entry(RUN_GOES_ON))
-        self._transcript = self._transcript.answer(message.ticket, entries)
-        if starts:
-            self._start(answer.snapshot)
+        state.transcript = state.transcript.answer(message.ticket, entries)
+        if starts and answer.snapshot.plan is not None:
+            self._start(answer.snapshot, answer.snapshot.plan)
         elif command == "help":
-            self._view = "help"
+            state.view = "help"
         elif command == "quit":
-            self._leave()
+            self.leave()
+        elif command == "run" and state.asks_to_start:
+            state.asks_to_start = False
+            if answer.snapshot.plan is not None and answer.snapshot.plan.segments:
+                self._deeds.confirm()
         if answer.snapshot.planning == "planning":
-            self._awaited = (message.ticket, answer)
+            state.awaited = (message.ticket, answer.snapshot.revision, before)
             self._tell_news()
-        self._draw()
+        self._pick_edited(answer)
+        self.draw()
+
+    def on_edited(self, message: told.Edited) -> None:
+        """Shows what a change by keys did."""
+        state, after = self.state, message.after
+        entries = [Entry(message.failure, "! ", "bad")] if message.failure else []
+        if state.current:
+            entries.append(Entry(RUN_GOES_ON))
+        if after.planning == "planning":
+            state.awaited = (message.ticket, after.revision, message.before)
+        news = change_in_words(
+            "", message.before, after.plan, after.planning == "planning", after.failure
+        ).strip()
+        state.transcript = state.transcript.answer(
+            message.ticket, [*entries, Entry(news or "Done.")]
+        )
+        self._tell_news()
+        if message.focus:
+            state.picked = message.focus
+        self.draw()
+        if message.focus:
+            self.board.main.pick(message.focus)
+
+    def _pick_edited(self, answer: Answer) -> None:
+        """Picks the checkpoint that a sentence has made or changed last."""
+        for edit in reversed(answer.interpretation.edits):
+            checkpoint = getattr(edit, "checkpoint", None)
+            found = getattr(checkpoint, "id", checkpoint)
+            if found in answer.snapshot.automaton.checkpoints:
+                self.state.picked = str(found)
+                return
 
     def _tell_news(self) -> None:
         """Adds what a change did to the plan, where the answer came before the plan."""
-        if self._awaited is None:
+        if self.state.awaited is None:
             return
-        ticket, answer = self._awaited
-        now = self._session.snapshot
-        if now.planning == "planning" and now.revision == answer.snapshot.revision:
+        ticket, revision, before = self.state.awaited
+        now = self.session.snapshot
+        if now.planning == "planning" and now.revision == revision:
             return
-        self._awaited = None
-        if now.revision == answer.snapshot.revision:
-            news = change_in_words("", answer.snapshot.plan, now.plan, False, now.failure).strip()
-            self._transcript = self._transcript.answer(ticket, [Entry(news)] if news else [])
+        self.state.awaited = None
+        if now.revision == revision:
+            news = change_in_words("", before, now.plan, False, now.failure).strip()
+            entries = [Entry(news)] if news else []
+            self.state.transcript = self.state.transcript.answer(ticket, entries)
 
-    def on_told(self, message: Told) -> None:
+    def on_told(self, message: told.Told) -> None:
         """Shows something else that was asked for."""
-        self._transcript = self._transcript.answer(message.ticket, message.entries)
-        self._draw()
+        self.state.transcript = self.state.transcript.answer(message.ticket, message.entries)
+        self.draw()
 
-    def on_happened(self, message: Happened) -> None:
+    def on_explained(self, message: told.Explained) -> None:
+        """Shows why a step of the plan is there."""
+        self.state.purposes[message.place] = message.text
+        self.draw()
+
+    def on_opened(self, message: told.Opened) -> None:
+        """Shows a log."""
+        shown = message.replay.shown("")
+        self.state.reading = Reading(message.replay, shown[0] if shown else 1)
+        self.state.read_wording = message.wording
+        self.state.view = "review"
+        self.draw()
+        self.board.main.focus()
+        self.board.main.reset()
+
+    def on_happened(self, message: told.Happened) -> None:
         """Shows an event of a run."""
-        if self._current is None:
+        state, event = self.state, message.event
+        if state.current is None:
             return
-        event = message.event
-        self._progress = advanced(self._progress, event, self._current.plan)
-        entry = event_entry(event, event.time - (self._progress.started or 0.0), self._glyphs)
+        state.progress = advanced(state.progress, event, state.current.plan)
+        started = state.progress.started or 0.0
+        entry = event_entry(event, event.time - started, state.glyphs)
         if entry is not None:
-            self._note(entry)
-        self._draw()
+            state.note(entry)
+        self.draw()
 
-    def on_run_over(self, message: RunOver) -> None:
+    def on_run_over(self, message: told.RunOver) -> None:
         """Goes back to editing."""
-        self._current = None
-        self._progress = replace(self._progress, activity="", at=None)
-        self._note(*message.entries)
-        if self._leaving:
+        self.state.current = None
+        self.state.progress = replace(self.state.progress, activity="", at=None)
+        self.state.note(*message.entries)
+        if self.state.leaving:
             self.exit(0)
-        self._draw()
+        self.draw()
 
-    # What the user does
+    # What the user does; these are called by the widgets at once, so that keys keep their order
 
-    def on_prompt_said(self, message: Prompt.Said) -> None:
-        """Takes a line."""
-        line = message.line
-        view, order = view_asked(line), order_in(line)
-        if order and (self._current or order == "stop"):
-            if self._current:
-                self._note(said=line)
-            self._order(order)
-        elif view is not None:
-            self._view = view
-            self._draw()
-        else:
-            self.action_say(line)
+    def action_do(self, id: str) -> None:
+        """Does an action that a key means everywhere."""
+        self._deeds.perform(id)
 
-    def on_pane_typed(self, message: Pane.Typed) -> None:
-        """Goes on typing in the input line."""
-        self._board.prompt.focus()
-        self._board.prompt.type_in(message.character)
+    def pane_key(self, pane: Pane, key: str, character: str | None) -> bool:
+        """Does what a letter means in a pane."""
+        action = self.keymap.letter(key, self.state.view)
+        if action is not None:
+            self._deeds.perform(action.id)
+            return True
+        if character is not None and character.isprintable():
+            help_key, back = self.keymap.first("help"), self.keymap.first("prompt")
+            self.tell_briefly(
+                f'"{character}" means nothing here. {help_key} lists the keys; {back} goes to the input line.'
+            )
+            return True
+        return False
 
-    def on_pane_chosen(self, message: Pane.Chosen) -> None:
-        """Says why something is in the program."""
-        checkpoint, action = message.row.checkpoint, message.row.action
-        if checkpoint is None or self._current:
+    def pane_moved(self, pane: Pane) -> None:
+        """Keeps what is picked with the cursor."""
+        row, state = pane.row, self.state
+        if pane is self.board.main and pane.has_focus and row is not None:
+            if state.view == "program" and not self.as_tree and row.checkpoint:
+                state.picked = row.checkpoint
+            elif state.view == "review" and state.reading is not None and row.action:
+                state.reading = replace(state.reading, number=row.action)
+                self.call_later(self.draw)
+        if not pane.has_focus or pane is not self.board.main or state.view == "program":
+            self.call_later(self.draw)
+
+    def take_line(self, line: str) -> None:
+        """Takes a line of the input line."""
+        state = self.state
+        if state.choosing.last is not None:
+            self._deeds.chosen(line)
+            self.draw()
             return
-        asked = f"why action {action}?" if action else f"what about {self._name_of(checkpoint)}?"
-        self._conversation.explain(checkpoint, action, self._note(said=asked))
-        self._draw()
-
-    def action_say(self, sentence: str) -> None:
-        """Says a sentence, typed or meant by a key."""
-        self._conversation.say(sentence, self._note(said=sentence), self._current)
-        self._draw()
-
-    def action_run(self) -> None:
-        """Asks for a run; it is read out, and needs a yes."""
-        if self._current:
-            self._note(Entry(ONE_RUN, "! "))
-            self._draw()
+        view, order, action = view_asked(line), order_in(line), action_asked(line)
+        if order and (state.current or order == "stop"):
+            if state.current:
+                state.note(said=line)
+            self._deeds.order(order)
+        elif action is not None:
+            known = any(a.id == action for a in self.keymap.actions)
+            self._deeds.perform(action if known else "actions")
+        elif view is not None:
+            state.view = view
+        elif line.isdecimal() and state.current and 0 < int(line) <= len(state.progress.waiting):
+            self._deeds.perform("tell", line)
         else:
-            self.action_say("run it")
+            self.say(line)
+        self.draw()
 
-    def action_stop(self) -> None:
-        """Stops the run, before all that is queued."""
-        self._order("stop")
+    def filter_menu(self, text: str) -> None:
+        """Filters the menu that is open."""
+        self.state.choosing = self.state.choosing.filtered(text)
+        self.draw()
 
-    def action_pause(self) -> None:
-        """Pauses the run, or resumes it."""
-        self._order("resume" if self._progress.activity == "paused" else "pause")
+    def move_menu(self, by: int) -> None:
+        """Picks another option."""
+        self.state.choosing = self.state.choosing.moved(by)
+        self.draw()
 
-    def action_view(self, view: View) -> None:
-        """Shows something else in the largest pane; the same key goes back."""
-        self._view = "plan" if view == self._view else view
-        self._board.main.reset()
-        self._draw()
-
-    def action_home(self) -> None:
-        """Goes back to the input line, the second time to the program."""
-        if self._board.prompt.has_focus and self._view != "plan":
-            self.action_view("plan")
-        self._board.prompt.focus()
-
-    def action_scroll(self, pages: int) -> None:
-        """Scrolls the largest pane."""
-        board = self._board
-        (board.answers if self._view == "answers" else board.main).scroll_rows(pages)
-
-    async def action_quit(self) -> None:
-        """Leaves; a run is stopped first, and the second time nothing is waited for."""
-        self._leave()
+    def names(self) -> Iterable[str]:
+        """What can be completed."""
+        return names_of(self.session.world, self.session.snapshot.automaton)
 
     def on_resize(self, event: Resize) -> None:
         """Shares the rows of the screen out anew."""
-        self.call_after_refresh(self._draw)
+        self.call_after_refresh(self.draw)
+
+    # What the actions need
+
+    def say(self, sentence: str) -> None:
+        """Says a sentence, typed or meant by a key."""
+        ticket = self.state.note(said=sentence)
+        self._conversation.say(sentence, ticket, self.state.current)
+
+    def edit(self, change: Change) -> None:
+        """Changes the program."""
+        self._conversation.edit(change, self.state.note(said=change.label))
+
+    def travel(self, steps: int) -> None:
+        """Goes back or forward in the program's history."""
+        word = "undo" if steps > 0 else "redo"
+        self._conversation.travel(steps, self.state.note(said=f"{word} {abs(steps)}"))
+
+    def explain(self, checkpoint: str, action: int | None) -> None:
+        """Says why something is in the program."""
+        found = self.session.snapshot.automaton.checkpoints.get(checkpoint)
+        name = found.name if found else checkpoint
+        asked = f"why action {action}?" if action else f"what about {name}?"
+        self._conversation.explain(checkpoint, action, self.state.note(said=asked))
+
+    def load(self, path: Path, label: str) -> None:
+        """Takes another program from a file."""
+        self._conversation.load(path, label, self.state.note(said=label))
+
+    def save_as(self, path: Path) -> None:
+        """Gives the program's file another name."""
+        self.state.kept = False
+        self._conversation.save_as(path, self.state.note(said=f"save as {path.name}"))
+
+    def open_log(self, path: Path) -> None:
+        """Opens a log."""
+        self._conversation.open_log(path, self.state.note(said=f"log {path.name}"))
+
+    def talk(self) -> None:
+        """Starts listening."""
+        if self._talk is not None:
+            self._talk()
+
+    def edit_file(self) -> None:
+        """Opens the program in the user's editor, and takes what it leaves."""
+        import shlex
+        import subprocess
+        import tempfile
+
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "program.polaris.json"
+            try:
+                write_program(self.session.program, path)
+                with self.suspend():
+                    subprocess.run([*shlex.split(editor()), str(path)], check=False)
+                kept = path.rename(Path(folder) / "edited.polaris.json")
+                from polaris_nl.automaton.edits import ReplaceProgram
+                from polaris_nl.automaton.program import read_program
+
+                program = read_program(kept).automaton
+            except (PolarisError, OSError) as error:
+                self.state.note(Entry(f"The program stays as it was. {error}", "! ", "bad"))
+                return
+        if program == self.session.snapshot.automaton:
+            self.state.note(Entry("Nothing was changed."))
+        else:
+            self.edit(Change("edit the file", (ReplaceProgram(program),)))
+
+    def scroll_pane(self, pages: int) -> None:
+        """Scrolls the pane that has the focus, else the largest one."""
+        focused = self.focused
+        if isinstance(focused, Pane):
+            focused.scroll_rows(pages)
+        else:
+            board = self.board
+            (board.answers if self.state.view == "answers" else board.main).scroll_rows(pages)
+
+    def ask(self, question: Menu | Ask) -> None:
+        """Lets the input line serve a menu or take a text."""
+        if not self.board.prompt.has_focus:
+            self._focused_before = self.focused
+        if isinstance(question, Ask):
+            self.board.prompt.serve("ask", question.initial)
+        else:
+            self.board.prompt.serve("menu")
+        self.board.prompt.focus()
+
+    def asked_enough(self) -> None:
+        """Gives the input line back to sentences, and the focus to where it was."""
+        self.board.prompt.serve("sentence")
+        if self._focused_before is not None:
+            self._focused_before.focus()
+        self._focused_before = None
+
+    def pick(self, checkpoint: str) -> None:
+        """Goes to a checkpoint of the program."""
+        self.state.view = "program"
+        self.state.picked = checkpoint
+        self.draw()
+        self.board.main.focus()
+        self.board.main.pick(checkpoint)
+
+    def tell_briefly(self, text: str) -> None:
+        """Says something that isn't worth keeping twice."""
+        self.state.note(Entry(text))
+        self.draw()
+
+    def read_back(self, automaton: Automaton) -> str:
+        """A program in a sentence."""
+        return self.session.understanding.read_back(automaton)
+
+    def dress(self, look: Look) -> None:
+        """Takes other colours."""
+        self.state.look = look
+        self.theme = look.theme
+        self.board.dress(look)
+
+    def want_purpose(self) -> None:
+        """Has it worked out why the step that is picked is there, unless that is known."""
+        stop = self.stop() if self.state.view == "plan" else None
+        place = (self.session.snapshot.revision, stop.number or 0) if stop else None
+        if stop and stop.number and place not in self.state.purposes:
+            self._conversation.purpose(stop.number)
+
+    def stops(self, leaf: str) -> tuple[Stop, ...]:
+        """The stops of a branch of the present plan."""
+        snapshot = self.session.snapshot
+        if snapshot.plan is None or leaf not in snapshot.automaton.checkpoints:
+            return ()
+        return branch_stops(snapshot.automaton, snapshot.plan, leaf, self.state.wording)
+
+    def stop(self) -> Stop | None:
+        """The step of the plan that is picked."""
+        stops = self.stops(self.state.steps.leaf)
+        return stops[min(self.state.steps.at, len(stops) - 1)] if stops else None
+
+    def follow_reading(self) -> None:
+        """Goes to the row of the event that is read."""
+        reading = self.state.reading
+        self.draw()
+        if reading is not None:
+            rows = self.board.main.rows
+            at = next((n for n, r in enumerate(rows) if (r.action or 0) >= reading.number), 0)
+            self.board.main.go_to(at)
+
+    def leave(self) -> None:
+        """Quits; a run is stopped first, and the second time nothing is waited for."""
+        if self.state.current is None or self.state.leaving:
+            self.exit(0)
+            return
+        self.state.leaving = True
+        self._deeds.order("stop")
 
     # Parts
 
-    def _note(self, *entries: Entry, said: str = "") -> int:
-        """Adds to what was said; returns its ticket."""
-        self._transcript = self._transcript.add(Exchange(said, entries))
-        return self._transcript.tickets
+    def _start(self, snapshot: Snapshot, plan: BranchingPlan) -> None:
+        log = new_log_path(self.session.world.name, self.logs) if self.logs else None
+        self.state.current = Running(self.session, snapshot, plan, self.tell, self._live, log)
+        self.state.progress = Progress(self.session.world.initial, activity="running")
+        if self.state.view != "map":
+            self.state.view = "run"
+        self.state.current.start()
 
-    def _name_of(self, checkpoint: str) -> str:
-        found = self._session.snapshot.automaton.checkpoints.get(checkpoint)
-        return found.name if found else checkpoint
+    @property
+    def as_tree(self) -> bool:
+        """Whether the program is drawn as a tree."""
+        return self.size.width >= TREE if self.state.tree is None else self.state.tree
 
-    def _start(self, snapshot: Snapshot) -> None:
-        if snapshot.plan is None:
-            return
-        log = new_log_path(self._session.world.name, self._logs) if self._logs else None
-        self._current = Running(self._session, snapshot, snapshot.plan, self._tell, self._live, log)
-        self._progress = Progress(self._session.world.initial, activity="running")
-        self._view = "plan" if self._view == "help" else self._view
-        self._current.start()
-
-    def _leave(self) -> None:
-        if self._current is None or self._leaving:
-            self.exit(0)
-            return
-        self._leaving = True
-        self._order("stop")
-
-    def _order(self, order: Order) -> None:
-        if self._current is not None:
-            self._current.command(HumanCommand(order))
-            activity: Activity = "stopping" if order == "stop" else self._progress.activity
-            self._progress = replace(self._progress, activity=activity)
-        elif order == "stop":
-            self._stopped_at = self._transcript.tickets
-            self.action_say("stop")  # The session forgets that it asked for a yes.
-        else:
-            self._note(Entry(NO_RUN))
-        self._draw()
-
-    def _scene(self) -> Scene:
-        running, path = self._current, self._session.path
-        return Scene(
-            self._session.world,
-            path.name if path else "(no file)",
-            running.snapshot if running else self._session.snapshot,
-            self._wording,
-            self._progress,
-            self._glyphs,
+    def desk(self) -> Desk:
+        """What is edited."""
+        automaton = self.session.snapshot.automaton
+        picked = self.state.picked if self.state.picked in automaton.checkpoints else START
+        return Desk(
+            self.session.world,
+            self.state.wording,
+            automaton,
+            picked,
+            self.session.understanding.names.checkpoint,
+            self.session.understanding.names.renamed,
         )
 
-    def _draw(self) -> None:
+    def situation(self) -> Situation:
+        """What can be done now."""
+        state, snapshot = self.state, self.session.snapshot
+        automaton, plan = snapshot.automaton, snapshot.plan
+        ways_out = offers(plan) if plan else ()
+        return Situation(
+            view=state.view,
+            checkpoint=state.picked if state.picked in automaton.checkpoints else START,
+            empty=len(automaton.checkpoints) == 1,
+            running=state.current is not None,
+            waiting=len(state.progress.waiting),
+            undoable=bool(snapshot.undoable),
+            redoable=bool(snapshot.redoable),
+            repairs=len(ways_out),
+            planned=plan is not None and bool(plan.segments or plan.problems),
+            loose=len(automaton.transitions) < len(automaton.checkpoints) - 1,
+            leftover=bool(self.leftovers),
+            listens=self._talk is not None,
+            editor=bool(editor()),
+        )
+
+    def scene(self) -> Scene:
+        """All that the panes show."""
+        state, session = self.state, self.session
+        running, path, reading = state.current, session.path, state.reading
+        snapshot = running.snapshot if running else session.snapshot
+        world, wording, progress = session.world, state.wording, state.progress
+        file = "(no name)" if state.kept else path.name if path else "(no file)"
+        if reading is not None:
+            replay = reading.replay
+            world, wording, file = replay.world, state.read_wording or wording, replay.path.name
+            snapshot = Snapshot(0, replay.automaton, replay.plan, "planned")
+            progress = replay.progress(reading.number)
+        else:
+            state.steps = stepping.kept(state.steps, snapshot.automaton, snapshot.plan)
+        stop = self.stop() if state.view == "plan" else None
+        place = (snapshot.revision, stop.number or 0) if stop else (0, 0)
+        loaded = "planner" in session.__dict__
+        return Scene(
+            world,
+            file,
+            snapshot,
+            wording,
+            progress,
+            state.glyphs,
+            self.keymap,
+            self.situation(),
+            session.planner.mutexes if loaded else Mutexes(),
+            self.as_tree and state.view == "program",
+            state.actions,
+            state.picked,
+            state.steps,
+            state.purposes.get(place, ""),
+            reading,
+            state.slow,
+        )
+
+    def draw(self) -> None:
         """Shows how things are now."""
-        self._board.show(self._scene(), self._view, self._transcript)
+        if self.is_running:
+            self.board.show(
+                self.scene(), self.state.view, self.state.transcript, self.state.choosing
+            )
