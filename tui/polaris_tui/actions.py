@@ -287,6 +287,10 @@ class Keymap:
                 return action
         return None
 
+    def anywhere(self, key: str) -> Action | None:
+        """The action of a key that works everywhere."""
+        return next((action for action in self.actions if key in action.keys), None)
+
     def shown(self, id: str) -> str:
         """The keys of an action for people, the first ones first; "" where it has none."""
         action = self._by_id[id]
@@ -327,7 +331,6 @@ FOOTERS: Mapping[str, tuple[str, ...]] = {
     "plan": ("next", "next-way", "map", "why", "prompt"),
     "run": ("stop", "pause", "tell", "map", "help"),
     "review": ("next-problem", "filter", "compare", "chain", "map", "prompt"),
-    "menu": ("prompt",),
 }
 """The actions that the status line shows, by what has the focus; those that don't fit are left out."""
 
@@ -347,8 +350,14 @@ _WORDS = {
 }
 
 
+_IN_A_MENU = "Up, Down, Enter choose  letters filter  {back} back"
+
+
 def footer(place: str, keymap: Keymap, now: Situation, room: int) -> str:
     """Keys with their meanings, as many as fit; those that can't be used now are left out."""
+    if place == "menu":
+        text = _IN_A_MENU.format(back=keymap.first("prompt"))
+        return text if len(text) <= room else f"{keymap.first('prompt')} back"
     shown = ""
     for id in FOOTERS[place]:
         action = keymap.of(id)

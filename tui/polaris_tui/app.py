@@ -300,6 +300,7 @@ class PolarisApp(App[int]):
     def on_run_over(self, message: told.RunOver) -> None:
         """Goes back to editing."""
         self.state.current = None
+        self.session.running = False
         self.state.progress = replace(self.state.progress, activity="", at=None)
         self.state.note(*message.entries)
         if self.state.leaving:
@@ -318,6 +319,8 @@ class PolarisApp(App[int]):
         if action is not None:
             self._deeds.perform(action.id)
             return True
+        if self.key_anywhere(key):
+            return True
         if character is not None and character.isprintable():
             help_key, back = self.keymap.first("help"), self.keymap.first("prompt")
             self.tell_briefly(
@@ -326,17 +329,26 @@ class PolarisApp(App[int]):
             return True
         return False
 
+    def key_anywhere(self, key: str) -> bool:
+        """Does what a key means everywhere."""
+        action = self.keymap.anywhere(key)
+        if action is not None:
+            self._deeds.perform(action.id)
+        return action is not None
+
     def pane_moved(self, pane: Pane) -> None:
         """Keeps what is picked with the cursor."""
         row, state = pane.row, self.state
-        if pane is self.board.main and pane.has_focus and row is not None:
+        if pane is self.board.main and row is not None:
             if state.view == "program" and not self.as_tree and row.checkpoint:
                 state.picked = row.checkpoint
             elif state.view == "review" and state.reading is not None and row.action:
                 state.reading = replace(state.reading, number=row.action)
-                self.call_later(self.draw)
-        if not pane.has_focus or pane is not self.board.main or state.view == "program":
-            self.call_later(self.draw)
+        self.call_later(self.draw)
+
+    def pane_left(self, pane: Pane) -> None:
+        """Shows other keys."""
+        self.call_later(self.draw)
 
     def take_line(self, line: str) -> None:
         """Takes a line of the input line."""
@@ -538,6 +550,7 @@ class PolarisApp(App[int]):
         self.state.progress = Progress(self.session.world.initial, activity="running")
         if self.state.view != "map":
             self.state.view = "run"
+        self.session.running = True
         self.state.current.start()
 
     @property
@@ -613,6 +626,7 @@ class PolarisApp(App[int]):
             state.purposes.get(place, ""),
             reading,
             state.slow,
+            state.view == "map" and state.before_view == "plan" and reading is None,
         )
 
     def draw(self) -> None:

@@ -100,19 +100,19 @@ class Board(Container):
         self.answers.show(lambda width, _: transcript.rows(width), "Answers")
         if menu.last is not None:
             self._menu.show(lambda width, _: menu.rows(width, self._glyphs), menu.heading())
-        place = "menu" if menu.last else self._place(view)
+        place = "menu" if menu.last else self._place(view, scene)
         self._status.show(lambda width, _: [status_row(scene, width, place)])
         self._sign_with(
             "> " if menu.last is None else "text: " if isinstance(menu.last, Ask) else "filter: "
         )
 
-    def _place(self, view: View) -> str:
+    def _place(self, view: View, scene: Scene) -> str:
         """What the status line's keys are about."""
         if view in ("plan", "review") and self.main.has_focus:
             return view
         if self.main.has_focus or self.trouble.has_focus:
             return "program"
-        return "prompt"
+        return "run" if scene.running else "prompt"
 
     def _sign_with(self, sign: str) -> None:
         if sign != self._signed:
@@ -127,6 +127,10 @@ class Board(Container):
         self._body.set_class(view == "answers" and menu.last is None, "-answers")
         self.trouble.display = troubles > 0
         self.trouble.styles.height = share.trouble
+        drawn = len(view_rows(view, scene, self.main.text_width, 1)) if scene.tree else 0
+        self.main.styles.height = (
+            min(drawn + 2, height // 2) if drawn and view == "program" else "1fr"
+        )
         self.side.display = view == "review" or (view == "program" and scene.tree)
         self.answers.display = menu.last is None and not (view == "review" and width < WIDE)
         self.answers.styles.height = "1fr" if filled else share.answers

@@ -67,11 +67,10 @@ class Choosing:
             text = cut(text, width, glyphs.more)
             span = (0, len(text)) if place == self.at else None
             rows.append(Row(text, "faint" if option.reason else "", None, None, span))
-        return rows or [Row("Nothing matches; type less, or Esc.", "faint")]
+        return rows or [
+            Row("Nothing matches. Enter says it as a sentence; Esc goes back.", "faint")
+        ]
 
     def heading(self) -> str:
         """The question, below those that led to it."""
-        title = self.last.title if self.last else ""
-        if isinstance(self.last, Menu):
-            return f"{title} (Enter: choose, type: filter, Esc: back)"
-        return title
+        return self.last.title if self.last else ""

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from polaris_nl.automaton.automaton import START
 from polaris_nl.execution.state import HumanCommand
 from polaris_nl.model.errors import PolarisError
+from polaris_nl.planning.result import Problem, Warning
 from polaris_nl.render.explanation import offers
 from polaris_tui import authoring, stepping
 from polaris_tui.actions import BY_ID, View
@@ -181,7 +182,14 @@ class Deeds:
     def _mend(self) -> None:
         plan = self._app.session.snapshot.plan
         found = offers(plan) if plan else ()
-        self.follow(authoring.mend_menu([(t.text, r.text, r.edits) for t, r in found]))
+        self.follow(authoring.mend_menu([(self._named(t), r.text, r.edits) for t, r in found]))
+
+    def _named(self, trouble: Problem | Warning) -> str:
+        """The checkpoint that something is wrong with."""
+        automaton = self._app.session.snapshot.automaton
+        way = automaton.transitions.get(trouble.transition or "")
+        id = getattr(trouble, "checkpoint", None) or (way.target if way else "")
+        return f"for {automaton.checkpoints[id].name}" if id in automaton.checkpoints else ""
 
     def _repair(self, number: int) -> None:
         plan = self._app.session.snapshot.plan
@@ -243,12 +251,18 @@ class Deeds:
     def _plan(self) -> None:
         state = self._state
         if state.view == "plan":
-            self.show("program")
+            state.view = "program"
             return
-        row = self._app.board.main.row
-        number = row.action if row and state.view == "program" and not self._app.as_tree else None
+        main = self._app.board.main
+        row = main.row if main.has_focus and state.view == "program" else None
+        number = row.action if row is not None and not self._app.as_tree else None
         self.show("plan")
-        self._at(state.picked, number)
+        if row is not None:
+            self._at(state.picked, number)
+        else:
+            leaf = stepping.first_leaf(self._app.session.snapshot.automaton, state.picked)
+            state.steps = stepping.Steps(leaf, 0)
+            self._app.want_purpose()
 
     def _at(self, checkpoint: str, number: int | None) -> None:
         """Goes to a step of the plan."""
@@ -373,18 +387,25 @@ class Deeds:
     def show(self, view: View) -> None:
         """Shows something else in the largest pane; the same again goes back."""
         state = self._state
-        home: View = "review" if state.reading is not None else "program"
-        state.view = home if view == state.view else view
+        if view == state.view:
+            view = state.before_view if state.before_view != view else self._home
+        state.before_view, state.view = state.view, view
         self._app.board.main.reset()
-        if state.view == "review":
+        if view in ("plan", "review"):  # There the arrows step.
+            self._app.board.main.focus()
+        if view == "review":
             self._app.follow_reading()
+
+    @property
+    def _home(self) -> View:
+        return "review" if self._state.reading is not None else "program"
 
     def _program(self) -> None:
         state = self._state
         if state.view == "program" and state.reading is None:
             state.actions = not state.actions
         state.reading = None
-        state.view = "program"
+        state.view = state.before_view = "program"
 
     def _copy(self, about: str) -> None:
         if about:
@@ -460,10 +481,10 @@ class Deeds:
             Option(
                 keymap.of(id).does,
                 Perform(id),
-                keymap.first(id),
-                keymap.of(id).reason(now),
+                f"key {keymap.first(id)}",
             )
             for id in (*ids, "connect")
+            if not keymap.of(id).reason(now)
         )
         self.follow(Menu(self._app.desk().here.name, options))
 
@@ -493,8 +514,8 @@ class Deeds:
         elif not self._app.board.prompt.has_focus:
             self._app.board.prompt.focus()
         elif state.view != "program":
-            state.reading = None
-            state.view = "program"
+            state.view = self._home if state.view != "review" else "program"
+            state.reading = state.reading if state.view == "review" else None
 
 
 def editor() -> str:

@@ -21,6 +21,7 @@ from textual.widget import Widget
 from polaris_nl.render.glyphs import Glyphs, plain
 from polaris_nl.render.layout import Row
 from polaris_tui.progress import Place
+from polaris_tui.prompt import Prompt
 from polaris_tui.styles import CURSOR, MARK, Look
 
 Draw = Callable[[int, int], Sequence[Row]]
@@ -38,7 +39,11 @@ class Owner(Protocol):
         ...
 
     def pane_moved(self, pane: Pane) -> None:
-        """The cursor is on another row, or the pane has got the focus, or lost it."""
+        """The cursor is on another row, or the pane has got the focus."""
+        ...
+
+    def pane_left(self, pane: Pane) -> None:
+        """The pane has lost the focus."""
         ...
 
 
@@ -272,7 +277,10 @@ class Pane(Widget, can_focus=True):
 
     async def _on_key(self, event: events.Key) -> None:
         """Asks the owner what a key means; what means nothing goes on to what works everywhere."""
-        if self._owner.pane_key(self, event.key, event.character):
+        focused = self.app.focused
+        if isinstance(focused, Prompt):  # It was typed ahead, before the focus moved.
+            await focused._on_key(event)
+        elif self._owner.pane_key(self, event.key, event.character):
             event.stop()
             event.prevent_default()
 
@@ -293,7 +301,7 @@ class Pane(Widget, can_focus=True):
 
     def on_blur(self) -> None:
         """Hides the cursor."""
-        self._owner.pane_moved(self)
+        self._owner.pane_left(self)
         self._repaint()
 
     def move(self, by: int) -> None:

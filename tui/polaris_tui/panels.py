@@ -18,13 +18,19 @@ from polaris_tui.stepping import first_leaf
 
 MAP_ROOM = (24, 6)
 """Columns and rows that a map needs at least."""
+MAP_BELOW = 10
+"""Rows from which on a map below other things is worth its room."""
+FEW = 3
+"""Rows of a timeline that make room for a map."""
 
 
 def map_rows(scene: Scene, width: int, height: int) -> list[Row]:
     """The map, or why there is none."""
     if width < MAP_ROOM[0] or height < MAP_ROOM[1]:
         return wrapped("The map needs a larger screen.", width, tone="faint")
-    rows = _map(scene, scene.progress.state, width, height)
+    stops = scene.stops() if scene.stepping else ()
+    after = stops[min(scene.steps.at, len(stops) - 1)].after if stops else None
+    rows = _map(scene, after or scene.progress.state, width, height)
     if not rows:
         return wrapped(f"The world {scene.world.name} has no map.", width, tone="faint")
     return rows
@@ -48,11 +54,20 @@ def plan_rows(scene: Scene, width: int, height: int) -> list[Row]:
     planned = frozenset(scene.snapshot.plan.segments if scene.snapshot.plan else ())
     timeline = timeline_rows(stops, at, scene.glyphs, width, planned)
     told = _told(scene, stops, at, width)
-    rows = [*_window(timeline, max(height - len(told) - 1, 3)), Row(""), *told]
-    state = stops[at].after
-    if state is not None:
-        rows += _map(scene, state, width, height - len(rows))
-    return rows
+    return _with_map(scene, timeline, [Row(""), *told], stops[at].after, width, height)
+
+
+def _with_map(
+    scene: Scene, timeline: list[Row], told: list[Row], state: State | None, width: int, height: int
+) -> list[Row]:
+    """A timeline and what there is to say, with the map below: part of the timeline makes room for it."""
+    room = height - len(told)
+    if room - len(timeline) < MAP_BELOW <= room - FEW and state is not None:
+        timeline = _window(timeline, FEW)
+    rows = [*_window(timeline, max(room, FEW)), *told]
+    if state is None or height - len(rows) < MAP_BELOW:
+        return rows
+    return rows + _map(scene, state, width, height - len(rows))
 
 
 def _window(rows: list[Row], height: int) -> list[Row]:
@@ -113,8 +128,7 @@ def run_rows(scene: Scene, width: int, height: int) -> list[Row]:
         key = scene.keymap.first("run")
         return wrapped(f"Nothing was run yet. {key} reads out what will happen, and asks.", width)
     told = [*_standing(scene, now, width), *expectation_rows(scene, now, width)]
-    rows = [*_window(way_rows(scene, now, width), max(height - len(told), 3)), *told]
-    return rows + _map(scene, now.state, width, height - len(rows))
+    return _with_map(scene, way_rows(scene, now, width), told, now.state, width, height)
 
 
 def way_rows(scene: Scene, now: Progress, width: int) -> list[Row]:

@@ -36,6 +36,10 @@ class Owner(Protocol):
         """Another option of a menu is wanted."""
         ...
 
+    def key_anywhere(self, key: str) -> bool:
+        """A key was pressed that the line has no use for; whether it meant anything."""
+        ...
+
     def names(self) -> Iterable[str]:
         """What can be completed."""
         ...
@@ -54,6 +58,7 @@ class Prompt(Input):
         )
         self.cursor_blink = False
         self._owner = owner
+        self._hint = placeholder
         self._purpose: Purpose = "sentence"
         self._kept = ""  # the sentence that was begun before a menu came
         self._earlier: list[str] = []
@@ -66,12 +71,16 @@ class Prompt(Input):
         if self._purpose == "sentence":
             self._kept = self.value
         self._purpose = purpose
+        self.placeholder = self._hint if purpose == "sentence" else ""
         self.value = self._kept if purpose == "sentence" else plain(initial)
         self.cursor_position = len(self.value)
 
     async def _on_key(self, event: events.Key) -> None:
         """Does at once what a key means; Textual lets characters typed after it overtake it."""
-        before = self.value
+        focused, before = self.app.focused, self.value
+        if focused is not None and focused is not self:  # Typed ahead, before the focus moved.
+            await focused._on_key(event)
+            return
         if event.key in ("up", "down"):
             self._vertical(-1 if event.key == "up" else 1)
         elif event.key in ("pageup", "pagedown") and self._purpose == "menu":
@@ -81,9 +90,9 @@ class Prompt(Input):
         elif bindings := self._bindings.key_to_bindings.get(event.key):
             await self.run_action(bindings[0].action)
         else:
-            if event.is_printable and event.character and event.key not in ("tab", "enter"):
+            if event.is_printable and event.character:
                 self.insert_text_at_cursor(event.character)
-            else:
+            elif not self._owner.key_anywhere(event.key):
                 return
         event.stop()
         event.prevent_default()

@@ -62,8 +62,12 @@ def text_of(event: Event) -> str:
 def detail_heading(scene: Scene) -> str:
     """What stands above the details."""
     reading = scene.reading
-    titles = {"event": "Event", "compare": "Expected and perceived", "chain": "What led to it"}
-    return f"{titles[reading.below]}, {reading.number}" if reading else ""
+    titles = {
+        "event": "Event",
+        "compare": "Expected and perceived at event",
+        "chain": "What led to event",
+    }
+    return f"{titles[reading.below]} {reading.number}" if reading else ""
 
 
 def detail_rows(scene: Scene, width: int) -> list[Row]:

@@ -54,6 +54,7 @@ class Scene:
         purpose: why the step that is picked is there, or "" while that is worked out.
         reading: the place in a log, or None.
         picked: the checkpoint that is picked.
+        stepping: the map is of the step that is picked.
         slow: the plan has been in the making for so long that the screen says so.
     """
 
@@ -73,6 +74,7 @@ class Scene:
     purpose: str = ""
     reading: Reading | None = None
     slow: bool = False
+    stepping: bool = False
 
     @property
     def running(self) -> bool:

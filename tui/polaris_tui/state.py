@@ -25,6 +25,7 @@ class State:
     Attributes:
         progress: of the run that goes on, or of the last one.
         read_wording: the words of the log that is open.
+        before_view: what was shown before the view, to go back to.
         tree: drawn as a tree, or as an outline; None as the width says.
         picked: the checkpoint that is picked.
         purposes: why actions are there, by revision and number.
@@ -44,6 +45,7 @@ class State:
     progress: Progress
     transcript: Transcript = field(default_factory=Transcript)
     view: View = "program"
+    before_view: View = "program"
     tree: bool | None = None
     actions: bool = True
     picked: str = START

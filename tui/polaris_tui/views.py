@@ -44,6 +44,8 @@ def heading(view: View, scene: Scene) -> str:
         case "map":
             if scene.reading is not None:
                 return f"Map, after event {scene.reading.number}"
+            if scene.stepping:
+                return f"Map, after step {scene.steps.at + 1}"
             if scene.progress.started is None:
                 return "Map, at the start"
             return "Map, now" if running else "Map, after the run"
