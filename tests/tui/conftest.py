@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import os
 import threading
 import time
 from collections.abc import Awaitable, Callable, Iterator
@@ -21,7 +22,7 @@ from polaris_tui.app import PolarisApp
 from polaris_tui.pane import Pane
 from polaris_tui.prompt import Prompt
 
-LIMIT_S = 20.0
+LIMIT_S = float(os.environ.get("T1_LIMIT", "20"))
 """How long a test waits for something that comes at once: only a fault makes it wait."""
 LUNCH = (
     "Tell the resident that lunch is ready. Once she acknowledges, bring a full tray to her table "
@@ -44,7 +45,7 @@ class Stage:
 
     @property
     def prompt(self) -> Prompt:
-        return self.app._board.prompt
+        return self.app.board.prompt
 
     def screen(self) -> str:
         """What a person sees."""
@@ -73,7 +74,7 @@ class Stage:
         """Waits until nothing that was said is without an answer."""
 
         def done() -> bool:
-            exchanges = self.app._transcript.exchanges.values()
+            exchanges = self.app.state.transcript.exchanges.values()
             return all(e.entries for e in exchanges) and self.planned()
 
         await self.until(done)
@@ -164,6 +165,7 @@ class GatedPlanner:
 
     def __init__(self, planner: object) -> None:
         self._planner = planner
+        self.mutexes = planner.mutexes  # type: ignore[attr-defined]
         self.gate = threading.Event()
         self.gate.set()
 

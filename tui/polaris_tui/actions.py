@@ -62,6 +62,10 @@ def _no_review(now: Situation) -> str:
     return "A log can't be changed; F2 goes back to the program." if now.view == "review" else ""
 
 
+def _filled(now: Situation) -> str:
+    return "The program has no checkpoint but the start." if now.empty else ""
+
+
 def _picked(now: Situation) -> str:
     if now.view == "review":
         return _no_review(now)
@@ -190,6 +194,7 @@ ACTIONS: tuple[Action, ...] = (
     _action("Program", "connect", "lead from here to an unconnected checkpoint", "", "x", _loose, "", _EDITED),
     _action("Program", "disconnect", "unconnect it from the one before", "", "X", _picked, "", _EDITED),
     _action("Program", "mend", "ways out of the problems", "ctrl+r", "f", _repairs, "mend"),
+    _action("Program", "pick", "go to a checkpoint by its name", "", "slash", _filled, "", _EDITED),
     _action("Program", "why", "why it is there, what it takes", "", "w", _always, "why", _EDITED),
     _action("Program", "undo", "undo", "f7 ctrl+z", "u", _undoable),
     _action("Program", "redo", "redo", "f8 ctrl+y", "U", _redoable),

@@ -27,7 +27,6 @@ from polaris_nl.model.state import Mutexes
 from polaris_nl.model.wording import PlainWording
 from polaris_nl.planning.result import BranchingPlan
 from polaris_nl.render.explanation import offers
-from polaris_nl.render.glyphs import ASCII, UNICODE, glyphs_for
 from polaris_nl.render.timeline import Stop, branch_stops
 from polaris_nl.session import Session
 from polaris_nl.snapshot import Answer, Snapshot
@@ -110,7 +109,7 @@ class PolarisApp(App[int]):
         self._live = live
         self._first_log = log
         self._talk = talk
-        glyphs = {"unicode": UNICODE, "ascii": ASCII}.get(settings.glyphs) or glyphs_for()
+        glyphs = settings.glyphs_for_terminal()
         self.state = State(
             glyphs,
             LOOKS[settings.theme],
@@ -214,7 +213,7 @@ class PolarisApp(App[int]):
         elif command == "run" and state.asks_to_start:
             state.asks_to_start = False
             if answer.snapshot.plan is not None and answer.snapshot.plan.segments:
-                self._deeds.confirm()
+                self._deeds.confirm(answer.say)
         if answer.snapshot.planning == "planning":
             state.awaited = (message.ticket, answer.snapshot.revision, before)
             self._tell_news()
@@ -398,6 +397,11 @@ class PolarisApp(App[int]):
         ticket = self.state.note(said=sentence)
         self._conversation.say(sentence, ticket, self.state.current)
 
+    @property
+    def busy(self) -> bool:
+        """Whether something that was asked for is still to be done."""
+        return self._conversation.busy
+
     def edit(self, change: Change) -> None:
         """Changes the program."""
         self._conversation.edit(change, self.state.note(said=change.label))
@@ -551,6 +555,7 @@ class PolarisApp(App[int]):
         if self.state.view != "map":
             self.state.view = "run"
         self.session.running = True
+        self.state.ran = snapshot
         self.state.current.start()
 
     @property
@@ -597,6 +602,8 @@ class PolarisApp(App[int]):
         state, session = self.state, self.session
         running, path, reading = state.current, session.path, state.reading
         snapshot = running.snapshot if running else session.snapshot
+        if state.view == "run":
+            snapshot = state.ran or snapshot
         world, wording, progress = session.world, state.wording, state.progress
         file = "(no name)" if state.kept else path.name if path else "(no file)"
         if reading is not None:

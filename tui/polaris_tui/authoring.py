@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from pathlib import Path
 
 from polaris_nl.automaton.automaton import START, Automaton, Checkpoint, Transition
 from polaris_nl.automaton.edits import (
@@ -29,6 +30,9 @@ from polaris_nl.model.text import listed, sentence
 from polaris_nl.model.wording import Wording
 from polaris_nl.model.world import World
 from polaris_tui.menus import Ask, Change, Menu, Note, Option, Perform, Step
+
+MOST_LOGS = 30
+"""Logs that are offered to be opened; others can be named."""
 
 NameOf = Callable[[Sequence[Goal], Sequence[Literal], Automaton], str]
 """The automatic name of a checkpoint: from its goals and the condition before it."""
@@ -351,6 +355,17 @@ def _disconnect(desk: Desk) -> Step:
     return Change(f"unconnect {desk.here.name}", (Disconnect(way.id),), desk.checkpoint)
 
 
+def pick_menu(desk: Desk) -> Step:
+    """All checkpoints, to go to one."""
+    return Menu(
+        "Go to which checkpoint?",
+        tuple(
+            Option(c.name, Perform("pick", c.id), desk.wording.goals(c.goals))
+            for c in desk.automaton.checkpoints.values()
+        ),
+    )
+
+
 def mend_menu(offers: Sequence[tuple[str, str, tuple[Edit, ...]]]) -> Step:
     """The ways out of all problems, and the changes that warnings offer.
 
@@ -363,6 +378,28 @@ def mend_menu(offers: Sequence[tuple[str, str, tuple[Edit, ...]]]) -> Step:
         "Ways out",
         tuple(Option(t, Change(t, e), about) for about, t, e in offers),
     )
+
+
+def tell_menu(waiting: Sequence[Sequence[Literal]], wording: Wording) -> Step:
+    """The conditionals that a run waits for."""
+    return Menu(
+        "What has happened?",
+        tuple(
+            Option(wording.events(when), Perform("tell", str(n)))
+            for n, when in enumerate(waiting, 1)
+        ),
+    )
+
+
+def log_menu(folder: Path | None) -> Step:
+    """The newest logs, and any other file."""
+    from polaris_nl.logs.paths import log_folder
+
+    found = (folder or log_folder()).glob("*.mcap")
+    paths = sorted(found, key=lambda p: p.name, reverse=True)[:MOST_LOGS]
+    options = [Option(p.name, Perform("log", str(p))) for p in paths]
+    other = Ask("Which file?", lambda x: Perform("log", x))
+    return Menu("Which log?", (*options, Option("another file", other)))
 
 
 def history_menu(undoable: Sequence[str], redoable: Sequence[str]) -> Step:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from polaris_nl.render.glyphs import Glyphs
-from polaris_nl.render.layout import Row, cut
+from polaris_nl.render.layout import Row, cut, wrapped
 from polaris_tui.menus import Ask, Menu, Option
 
 
@@ -58,7 +58,8 @@ class Choosing:
         """The options, the picked one picked out."""
         if isinstance(self.last, Ask):
             return [Row("Type it, and press Enter; Esc goes back.", "faint")]
-        rows = []
+        about = self.last.about if isinstance(self.last, Menu) else ""
+        rows = wrapped(about, width) if about else []
         everything = self.last.options if isinstance(self.last, Menu) else ()
         for place, option in enumerate(self.options):
             number = everything.index(option) + 1
@@ -67,9 +68,10 @@ class Choosing:
             text = cut(text, width, glyphs.more)
             span = (0, len(text)) if place == self.at else None
             rows.append(Row(text, "faint" if option.reason else "", None, None, span))
-        return rows or [
-            Row("Nothing matches. Enter says it as a sentence; Esc goes back.", "faint")
-        ]
+        if not self.options:
+            text = "Nothing matches. Enter says it as a sentence; Esc goes back."
+            rows.append(Row(text, "faint"))
+        return rows
 
     def heading(self) -> str:
         """The question, below those that led to it."""

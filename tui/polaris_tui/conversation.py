@@ -56,14 +56,24 @@ class Conversation:
         self._session = session
         self._tell = tell
         self._ended = False
+        self._put_in = self._done = 0  # Each is counted in one thread alone.
         self._reasons: Reasons | None = None
         self._jobs: queue.SimpleQueue[_Job | None] = queue.SimpleQueue()
         self._thread = threading.Thread(target=self._work, name="conversation", daemon=True)
 
     def start(self) -> None:
         """Starts the thread; it first loads language and planner."""
-        self._jobs.put(_Job(self._warm_up, 0))
+        self._put(_Job(self._warm_up, 0))
         self._thread.start()
+
+    @property
+    def busy(self) -> bool:
+        """Whether there is work that isn't done."""
+        return self._put_in > self._done
+
+    def _put(self, job: _Job) -> None:
+        self._put_in += 1
+        self._jobs.put(job)
 
     def end(self, seconds: float) -> None:
         """Ends the thread after what it is doing, and waits so long for that."""
@@ -74,35 +84,35 @@ class Conversation:
 
     def say(self, sentence: str, ticket: int, running: Running | None = None) -> None:
         """Carries a sentence out; during a run it may be a command for that."""
-        self._jobs.put(_Job(lambda: self._say(sentence, ticket, running), ticket))
+        self._put(_Job(lambda: self._say(sentence, ticket, running), ticket))
 
     def explain(self, checkpoint: str, action: int | None, ticket: int) -> None:
         """Says why an action is there, or what a checkpoint takes."""
-        self._jobs.put(_Job(lambda: self._explain(checkpoint, action, ticket), ticket))
+        self._put(_Job(lambda: self._explain(checkpoint, action, ticket), ticket))
 
     def edit(self, change: Change, ticket: int) -> None:
         """Changes the program as one step."""
-        self._jobs.put(_Job(lambda: self._edit(change, ticket), ticket))
+        self._put(_Job(lambda: self._edit(change, ticket), ticket))
 
     def travel(self, steps: int, ticket: int) -> None:
         """Goes so many steps back in the program's history, or forward with a negative number."""
-        self._jobs.put(_Job(lambda: self._travel(steps, ticket), ticket))
+        self._put(_Job(lambda: self._travel(steps, ticket), ticket))
 
     def purpose(self, number: int) -> None:
         """Says why an action of the present plan is there, for the plan step by step."""
-        self._jobs.put(_Job(lambda: self._purpose(number), 0))
+        self._put(_Job(lambda: self._purpose(number), 0))
 
     def open_log(self, path: Path, ticket: int) -> None:
         """Opens a log."""
-        self._jobs.put(_Job(lambda: self._open_log(path), ticket))
+        self._put(_Job(lambda: self._open_log(path), ticket))
 
     def load(self, path: Path, label: str, ticket: int) -> None:
         """Takes another program from a file, as a step that can be undone."""
-        self._jobs.put(_Job(lambda: self._load(path, label, ticket), ticket))
+        self._put(_Job(lambda: self._load(path, label, ticket), ticket))
 
     def save_as(self, path: Path, ticket: int) -> None:
         """Saves the program to another file from now on."""
-        self._jobs.put(_Job(lambda: self._save_as(path, ticket), ticket))
+        self._put(_Job(lambda: self._save_as(path, ticket), ticket))
 
     def _work(self) -> None:
         while (job := self._jobs.get()) is not None and not self._ended:
@@ -114,6 +124,7 @@ class Conversation:
                 # A fault must not take the screen with it: the program is saved, and can be mended.
                 text = f"That went wrong ({type(error).__name__}: {error}). Say it another way."
                 self._tell(Told(job.ticket, Entry(text, "! ", "bad")))
+            self._done += 1
 
     def _warm_up(self) -> None:
         failure = ""

@@ -27,9 +27,6 @@ from polaris_tui.transcript import Entry
 if TYPE_CHECKING:
     from polaris_tui.app import PolarisApp
 
-MOST_LOGS = 30
-"""Logs that are offered to be opened; others can be named."""
-
 
 class Deeds:
     """Carries actions out.
@@ -45,6 +42,7 @@ class Deeds:
         self._do: dict[str, Callable[[str], None]] = {
             "mend": lambda about: self._mend(),
             "why": lambda about: self._why(),
+            "pick": self._pick,
             "undo": lambda about: self._travel(about, "undo"),
             "redo": lambda about: self._travel(about, "redo"),
             "history": lambda about: self._history(),
@@ -98,7 +96,8 @@ class Deeds:
     def perform(self, id: str, about: str = "") -> None:
         """Does an action, or says why not."""
         action = BY_ID.get(id)
-        reason = action.reason(self._app.situation()) if action else ""
+        queued = id in ("undo", "redo") and self._app.busy  # what is queued decides, then
+        reason = action.reason(self._app.situation()) if action and not queued else ""
         if reason:
             self._state.note(Entry(reason))
         elif id in self._do:
@@ -198,6 +197,12 @@ class Deeds:
             _, repair = found[number - 1]
             self._app.edit(Change(repair.text, repair.edits))
 
+    def _pick(self, about: str) -> None:
+        if about:
+            self._app.pick(about)
+        else:
+            self.follow(authoring.pick_menu(self._app.desk()))
+
     def _why(self) -> None:
         if self._state.view == "plan":
             stop = self._app.stop()
@@ -294,8 +299,8 @@ class Deeds:
         self._state.asks_to_start = True
         self._app.say("run it")
 
-    def confirm(self) -> None:
-        """Asks for the yes, after what will happen was read out."""
+    def confirm(self, read_out: str) -> None:
+        """Asks for the yes, below what will happen."""
         self.follow(
             Menu(
                 "Shall I start?",
@@ -303,6 +308,7 @@ class Deeds:
                     Option("yes, start", Perform("say", "yes")),
                     Option("no", Perform("say", "no")),
                 ),
+                read_out,
             )
         )
 
@@ -329,11 +335,7 @@ class Deeds:
             self._state.note(said=wording.events(when))
             current.command(HumanCommand("happened", when))
             return
-        options = tuple(
-            Option(wording.events(when), Perform("tell", str(n)))
-            for n, when in enumerate(waiting, 1)
-        )
-        self.follow(Menu("What has happened?", options))
+        self.follow(authoring.tell_menu(waiting, wording))
 
     # Logs
 
@@ -341,13 +343,7 @@ class Deeds:
         if about:
             self._app.open_log(Path(about).expanduser())
             return
-        from polaris_nl.logs.paths import log_folder
-
-        folder = self._app.logs or log_folder()
-        paths = sorted(folder.glob("*.mcap"), key=lambda p: p.name, reverse=True)[:MOST_LOGS]
-        options = [Option(p.name, Perform("log", str(p))) for p in paths]
-        other = Ask("Which file?", lambda x: Perform("log", x))
-        self.follow(Menu("Which log?", (*options, Option("another file", other))))
+        self.follow(authoring.log_menu(self._app.logs))
 
     def _problem(self, step: int) -> None:
         reading = self._state.reading

@@ -59,10 +59,11 @@ class Option:
 
 @dataclass(frozen=True, slots=True)
 class Menu:
-    """Options to choose one from."""
+    """Options to choose one from, below a text that says more than the title."""
 
     title: str
     options: tuple[Option, ...]
+    about: str = ""
 
     def matching(self, text: str) -> tuple[Option, ...]:
         """The options that hold all words of a text, or the one of a number."""

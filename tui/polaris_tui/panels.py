@@ -53,7 +53,7 @@ def plan_rows(scene: Scene, width: int, height: int) -> list[Row]:
     at = min(scene.steps.at, len(stops) - 1)
     planned = frozenset(scene.snapshot.plan.segments if scene.snapshot.plan else ())
     timeline = timeline_rows(stops, at, scene.glyphs, width, planned)
-    told = _told(scene, stops, at, width)
+    told = told_rows(scene, stops, at, width)
     return _with_map(scene, timeline, [Row(""), *told], stops[at].after, width, height)
 
 
@@ -77,7 +77,7 @@ def _window(rows: list[Row], height: int) -> list[Row]:
     return rows[top : top + height]
 
 
-def _told(scene: Scene, stops: Sequence[Stop], at: int, width: int) -> list[Row]:
+def told_rows(scene: Scene, stops: Sequence[Stop], at: int, width: int) -> list[Row]:
     """What the picked stop is, what it changes, and why it is there."""
     stop = stops[at]
     place = f"Step {at + 1} of {len(stops)}"
@@ -166,7 +166,8 @@ def _behind(stop: Stop, now: Progress) -> bool:
 def _standing(scene: Scene, now: Progress, width: int) -> list[Row]:
     """In a sentence, how the run is; with the ways that are waited for."""
     if now.outcome:
-        return wrapped(sentence(f"the run is over. {now.outcome}"), width, tone="strong")
+        outcome, _, reason = now.outcome.partition(": ")
+        return wrapped(f"The run is over: {outcome}. {reason}", width, tone="strong")
     if not now.waiting:
         return []
     key = scene.keymap.first("tell")

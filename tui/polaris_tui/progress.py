@@ -118,7 +118,7 @@ def advanced(progress: Progress, event: Event, plan: BranchingPlan) -> Progress:
             return replace(progress, activity=_ACTIVITIES.get(event.after, "running"))
         case RunEnded():
             outcome = f"{event.outcome}: {event.reason or event.text}".strip(": ")
-            return replace(progress, activity="", at=None, waiting=(), outcome=outcome)
+            return replace(progress, activity="", at=None, waiting=(), expected=(), outcome=outcome)
     return progress
 
 

@@ -21,6 +21,7 @@ from pathlib import Path
 from typing import Any
 
 from polaris_nl.model.errors import FormatError, did_you_mean
+from polaris_nl.render.glyphs import ASCII, UNICODE, Glyphs, glyphs_for
 from polaris_tui.actions import BY_ID, Keymap, clashes
 from polaris_tui.styles import LOOKS
 
@@ -48,6 +49,10 @@ class Settings:
     mouse: bool = False
     tree: str = "auto"
     keys: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+
+    def glyphs_for_terminal(self) -> Glyphs:
+        """The signs to draw with."""
+        return {"unicode": UNICODE, "ascii": ASCII}.get(self.glyphs) or glyphs_for()
 
     @property
     def keymap(self) -> Keymap:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from polaris_nl.session import Session
 from polaris_tui.keeping import keeping_path, leftovers, tidied
-from polaris_tui.settings import read_settings, settings_path
+from polaris_tui.settings import Settings, read_settings, settings_path
 
 
 def start(session: Session, *, log: Path | None = None, plain: bool = False) -> int:
@@ -28,6 +28,8 @@ def start(session: Session, *, log: Path | None = None, plain: bool = False) -> 
     kept_at = session.path
     left = leftovers(session.world.name)
     try:
+        if plain:
+            return _lines(session, settings, log)
         from polaris_tui.app import PolarisApp
 
         app = PolarisApp(
@@ -43,3 +45,27 @@ def start(session: Session, *, log: Path | None = None, plain: bool = False) -> 
         if kept and kept_at is not None and tidied(kept_at) and session.path == kept_at:
             sys.stdout.write(f"The program is kept. Go on with: polaris-nl tui {kept_at}\n")
     return int(code or 0)
+
+
+def _lines(session: Session, settings: Settings, log: Path | None) -> int:
+    """The line mode."""
+    from polaris_nl.commands.common import width
+    from polaris_nl.model.wording import PlainWording
+    from polaris_tui.plain import Plain, typed_lines
+    from polaris_tui.progress import Progress
+    from polaris_tui.scene import Scene
+
+    scene = Scene(
+        session.world,
+        session.path.name if session.path else "(no file)",
+        session.snapshot,
+        PlainWording(session.world),
+        Progress(session.world.initial),
+        settings.glyphs_for_terminal(),
+        settings.keymap,
+    )
+    talk = Plain(session, lambda line: print(line, flush=True), scene, width())
+    if log is not None:
+        talk.open_log(log)
+    talk.work(typed_lines())
+    return 0

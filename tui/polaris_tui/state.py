@@ -8,6 +8,7 @@ from polaris_nl.automaton.automaton import START
 from polaris_nl.model.wording import Wording
 from polaris_nl.planning.result import BranchingPlan
 from polaris_nl.render.glyphs import Glyphs
+from polaris_nl.snapshot import Snapshot
 from polaris_tui.actions import View
 from polaris_tui.choosing import Choosing
 from polaris_tui.progress import Progress
@@ -30,6 +31,7 @@ class State:
         picked: the checkpoint that is picked.
         purposes: why actions are there, by revision and number.
         current: the run that goes on.
+        ran: the program and plan of the last run.
         awaited_plan: the plan that the last answer was about.
         awaited: ticket, revision and older plan of an answer whose plan's news are to come.
         stopped_at: the ticket of the last thing said before a stop.
@@ -55,6 +57,7 @@ class State:
     read_wording: Wording | None = None
     choosing: Choosing = Choosing()
     current: Running | None = None
+    ran: Snapshot | None = None
     awaited_plan: BranchingPlan | None = None
     awaited: tuple[int, int, BranchingPlan | None] | None = None
     stopped_at: int = 0
