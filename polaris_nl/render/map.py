@@ -9,6 +9,8 @@ from polaris_nl.render.layout import cut
 
 _ASPECT = 2.0
 """A character is about twice as high as wide."""
+_STRETCH = 2.0
+"""How much wider than to scale a map may be where it has few rows, so that names have room."""
 
 
 def map_lines(world: World, state: State, glyphs: Glyphs, width: int, height: int) -> list[str]:
@@ -25,14 +27,15 @@ def map_lines(world: World, state: State, glyphs: Glyphs, width: int, height: in
     if not regions:
         return []
     left, right, bottom, top = _bounds(regions)
-    per_column = max((right - left) / (width - 1), (top - bottom) / (height - 1) / _ASPECT)
+    per_line = max((right - left) / (width - 1) * _ASPECT, (top - bottom) / (height - 1))
+    per_column = max((right - left) / (width - 1), per_line / _ASPECT / _STRETCH)
     columns = int((right - left) / per_column) + 1
-    lines = int((top - bottom) / (per_column * _ASPECT)) + 1
+    lines = int((top - bottom) / per_line) + 1
     grid = [[" "] * columns for _ in range(lines)]
 
     def place(x: float, y: float) -> tuple[int, int]:
         column = round((x - left) / per_column)
-        line = round((top - y) / (per_column * _ASPECT))
+        line = round((top - y) / per_line)
         return min(line, lines - 1), min(column, columns - 1)
 
     for region in regions:

@@ -30,6 +30,7 @@ class Situation:
         repairs: ways out and changes that the plan offers.
         planned: there is a plan with at least one action or checkpoint.
         loose: checkpoints that nothing leads to.
+        elsewhere: a run of this world goes on in another terminal, or without one.
         leftover: an earlier session has left a program unsaved.
         listens: something is there that push-to-talk can start.
         editor: the user's editor is known.
@@ -45,6 +46,7 @@ class Situation:
     repairs: int = 0
     planned: bool = False
     loose: bool = False
+    elsewhere: bool = False
     leftover: bool = False
     listens: bool = False
     editor: bool = False
@@ -72,7 +74,7 @@ def _picked(now: Situation) -> str:
     if now.empty:
         return 'There is no checkpoint yet; "a" adds one, or say what the robot should achieve.'
     if now.checkpoint == START:
-        return "The start always stays as it is; go down to another checkpoint first."
+        return "The start always stays as it is; pick another checkpoint first."
     return ""
 
 
@@ -119,6 +121,10 @@ def _reviewing(now: Situation) -> str:
 
 def _stepping(now: Situation) -> str:
     return "" if now.view == "plan" else "This is for the plan step by step; F4 opens it."
+
+
+def _elsewhere(now: Situation) -> str:
+    return _runnable(now) or ("" if now.elsewhere else "No run goes on in another terminal.")
 
 
 def _listens(now: Situation) -> str:
@@ -215,6 +221,7 @@ ACTIONS: tuple[Action, ...] = (
     _action("Run", "pause", "pause the run, and resume it", "f6", "", _running),
     _action("Run", "stop", "stop the run, at any time", "f9 ctrl+c", "", _always, "", (), True),
     _action("Run", "tell", "tell the robot what has happened", "ctrl+t", "t", _waiting, "tell"),
+    _action("Run", "attach", "see a run that goes on without its terminal", "", "", _elsewhere),
     _action("Run", "talk", "push to talk", "ctrl+at", "", _listens),
     _action("Review", "log", "open the log of a run", "", "l", _always),
     _action("Review", "next-problem", "the next problem", "", "n", _reviewing, "next problem", ("review",)),
@@ -360,6 +367,8 @@ _IN_A_MENU = "Up, Down, Enter choose  letters filter  {back} back"
 
 def footer(place: str, keymap: Keymap, now: Situation, room: int) -> str:
     """Keys with their meanings, as many as fit; those that can't be used now are left out."""
+    if place == "ask":
+        return f"Enter takes it  {keymap.first('prompt')} back"
     if place == "menu":
         text = _IN_A_MENU.format(back=keymap.first("prompt"))
         return text if len(text) <= room else f"{keymap.first('prompt')} back"

@@ -7,6 +7,7 @@ back is a message here. Each message makes a new scene, and the panes are drawn 
 from __future__ import annotations
 
 import contextlib
+import sys
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from pathlib import Path
@@ -61,6 +62,9 @@ KEPT = "This program has no name yet, and is kept all the same; :save-as gives i
 LEFT = "An earlier session ended without a name for its program; :recover brings it back."
 NO_RUN = 'There is no run. F5, or "run it", starts one.'
 RUN_GOES_ON = "The run goes on with the program that was read out; this counts from the next run."
+ATTACHED = (
+    "This run was begun in another terminal. It can be stopped from here; quitting lets it go on."
+)
 STOPPED_FIRST = "You said stop before it began, so nothing runs."
 ONE_RUN = "A run is going on. Stop it with F9 before you start another."
 
@@ -76,6 +80,8 @@ class PolarisApp(App[int]):
         kept: the program's file is not the user's, but one that keeps it until it has a name.
         leftovers: what earlier sessions left unsaved.
         log: a log to be opened at once.
+        listens_at: the folder where runs listen to other terminals; None for nowhere.
+        elsewhere: where runs of this world listen that go on already.
         talk: starts listening, where something can.
         settings_file: where settings are, for what is said about them.
     """
@@ -95,6 +101,8 @@ class PolarisApp(App[int]):
         kept: bool = False,
         leftovers: Iterable[Leftover] = (),
         log: Path | None = None,
+        listens_at: Path | None = None,
+        elsewhere: Iterable[Path] = (),
         talk: Callable[[], None] | None = None,
         settings_file: str = "the settings",
     ) -> None:
@@ -109,6 +117,8 @@ class PolarisApp(App[int]):
         self._live = live
         self._first_log = log
         self._talk = talk
+        self._listens_at = listens_at
+        self._elsewhere = tuple(elsewhere)
         glyphs = settings.glyphs_for_terminal()
         self.state = State(
             glyphs,
@@ -154,10 +164,22 @@ class PolarisApp(App[int]):
     def on_unmount(self) -> None:
         """Leaves no thread behind that still uses the session."""
         self._unsubscribe()
-        if self.state.current is not None:
-            self.state.current.command(HumanCommand("stop"))
-            self.state.current.wait(END_S)
+        current = self.state.current
+        gone = sys.__stdin__ is None or not sys.__stdin__.isatty()
+        if current is not None and not self.is_headless and gone:
+            self.state.hung_up = True
+        if isinstance(current, Running) and not self.state.hung_up:
+            current.command(HumanCommand("stop"))
+            current.wait(END_S)
+        elif current is not None and not isinstance(current, Running):
+            current.leave()
+            current.wait(END_S)
         self._conversation.end(END_S)
+
+    def on_hung_up(self) -> None:
+        """The terminal is gone: leaves it alone, and lets a run go on (see `remote`)."""
+        self.state.hung_up = self.state.current is not None
+        self.exit(0)
 
     # What the threads tell
 
@@ -173,6 +195,8 @@ class PolarisApp(App[int]):
             self.state.note(Entry(message.failure, "! ", "bad"))
         else:
             self.state.wording = self.session.wording
+        if self._elsewhere:
+            self.attach()
         self.draw()
 
     def on_changed(self) -> None:
@@ -540,8 +564,8 @@ class PolarisApp(App[int]):
 
     def leave(self) -> None:
         """Quits; a run is stopped first, and the second time nothing is waited for."""
-        if self.state.current is None or self.state.leaving:
-            self.exit(0)
+        if not isinstance(self.state.current, Running) or self.state.leaving:
+            self.exit(0)  # A run of another terminal goes on.
             return
         self.state.leaving = True
         self._deeds.order("stop")
@@ -550,13 +574,55 @@ class PolarisApp(App[int]):
 
     def _start(self, snapshot: Snapshot, plan: BranchingPlan) -> None:
         log = new_log_path(self.session.world.name, self.logs) if self.logs else None
-        self.state.current = Running(self.session, snapshot, plan, self.tell, self._live, log)
+        run = Running(self.session, snapshot, plan, self.tell, self._live, log)
+        if self._listens_at is not None:
+            run.tell = self._served(run)
+        self.state.current = run
         self.state.progress = Progress(self.session.world.initial, activity="running")
         if self.state.view != "map":
             self.state.view = "run"
         self.session.running = True
         self.state.ran = snapshot
         self.state.current.start()
+
+    def _served(self, run: Running) -> Callable[[Message], object]:
+        """Lets other terminals see and command a run; returns whom it tells what happens."""
+        from polaris_nl.automaton.program import program_json
+        from polaris_nl.planning.plan_json import plan_json
+        from polaris_tui.remote import RunServer
+
+        program = program_json(self.session.program_of(run.snapshot.automaton))
+        plan = plan_json(run.plan, run.snapshot.automaton)
+        hello = {"world": self.session.world.name, "program": program, "plan": plan}
+        try:
+            assert self._listens_at is not None
+            server = RunServer(hello, run.command, self._listens_at)
+        except OSError as error:
+            text = f"No other terminal will be able to stop this run ({error})."
+            self.state.note(Entry(text, "! "))
+            return self.tell
+
+        def both(message: Message) -> None:
+            server.tell(message)
+            self.tell(message)
+
+        return both
+
+    def attach(self) -> None:
+        """Shows the run that goes on elsewhere; it can be stopped, paused and told things from here."""
+        from polaris_tui.remote import RemoteRun
+
+        try:
+            run = RemoteRun(self._elsewhere[-1], self.tell)
+        except PolarisError as error:
+            self.state.note(Entry(str(error), "! ", "bad"))
+            return
+        self._elsewhere = self._elsewhere[:-1]
+        self.state.current, self.state.ran = run, run.snapshot
+        self.state.progress = Progress(self.session.world.initial, activity="running")
+        self.state.view = "run"
+        self.state.note(Entry(ATTACHED))
+        run.start()
 
     @property
     def as_tree(self) -> bool:
@@ -592,6 +658,7 @@ class PolarisApp(App[int]):
             repairs=len(ways_out),
             planned=plan is not None and bool(plan.segments or plan.problems),
             loose=len(automaton.transitions) < len(automaton.checkpoints) - 1,
+            elsewhere=bool(self._elsewhere),
             leftover=bool(self.leftovers),
             listens=self._talk is not None,
             editor=bool(editor()),

@@ -100,7 +100,9 @@ class Board(Container):
         self.answers.show(lambda width, _: transcript.rows(width), "Answers")
         if menu.last is not None:
             self._menu.show(lambda width, _: menu.rows(width, self._glyphs), menu.heading())
-        place = "menu" if menu.last else self._place(view, scene)
+        place = self._place(view, scene)
+        if menu.last is not None:
+            place = "ask" if isinstance(menu.last, Ask) else "menu"
         self._status.show(lambda width, _: [status_row(scene, width, place)])
         self._sign_with(
             "> " if menu.last is None else "text: " if isinstance(menu.last, Ask) else "filter: "

@@ -28,7 +28,10 @@ from polaris_tui.messages import Answered, Edited, Explained, Opened, Told, Warm
 from polaris_tui.transcript import Entry
 
 if TYPE_CHECKING:
+    from polaris_tui.remote import RemoteRun
     from polaris_tui.running import Running
+
+    Run = Running | RemoteRun
 
 ANSWER_WAIT_S = 1.0
 """How long an answer waits for the plan; the plan's news come later then."""
@@ -82,7 +85,7 @@ class Conversation:
         if self._thread.is_alive():
             self._thread.join(seconds)
 
-    def say(self, sentence: str, ticket: int, running: Running | None = None) -> None:
+    def say(self, sentence: str, ticket: int, running: Run | None = None) -> None:
         """Carries a sentence out; during a run it may be a command for that."""
         self._put(_Job(lambda: self._say(sentence, ticket, running), ticket))
 
@@ -134,7 +137,7 @@ class Conversation:
             failure = str(error)
         self._tell(Warmed(failure))
 
-    def _say(self, sentence: str, ticket: int, running: Running | None) -> None:
+    def _say(self, sentence: str, ticket: int, running: Run | None) -> None:
         if running is not None and running.active:
             from polaris_nl.commands.run import command_in
 

@@ -62,6 +62,7 @@ class Deeds:
             "pause": lambda about: self._pause(),
             "stop": lambda about: self.order("stop"),
             "tell": self._tell,
+            "attach": lambda about: app.attach(),
             "talk": lambda about: app.talk(),
             "log": self._log,
             "next-problem": lambda about: self._problem(1),

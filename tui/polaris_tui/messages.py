@@ -24,6 +24,10 @@ class Warmed(Message):
         self.failure = failure
 
 
+class HungUp(Message):
+    """The terminal is gone."""
+
+
 class Changed(Message):
     """The session has a new snapshot."""
 

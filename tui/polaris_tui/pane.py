@@ -300,7 +300,8 @@ class Pane(Widget, can_focus=True):
         self._repaint()
 
     def on_blur(self) -> None:
-        """Hides the cursor."""
+        """Hides the cursor; what it was at stays in sight."""
+        self._point = None if self._follows else self._cursor
         self._owner.pane_left(self)
         self._repaint()
 

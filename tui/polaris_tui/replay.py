@@ -157,7 +157,9 @@ def open_replay(path: Path, world: World) -> Replay:
     log = read_log(path)
     own = _world(log) or world
     automaton = _program(log)
-    return Replay(path, log.events, own, automaton, _plan(log, automaton), log.complete)
+    planned = next((e for e in reversed(log.events) if isinstance(e, Planned)), None)
+    plan = plan_of(planned.plan if planned else {}, automaton)
+    return Replay(path, log.events, own, automaton, plan, log.complete)
 
 
 def _world(log: Log) -> World | None:
@@ -184,10 +186,8 @@ def _program(log: Log) -> Automaton:
         ) from error
 
 
-def _plan(log: Log, automaton: Automaton) -> BranchingPlan:
-    """The plan of the log's run, as far as it can be drawn: actions without the states after them."""
-    planned = next((e for e in reversed(log.events) if isinstance(e, Planned)), None)
-    value: Mapping[str, Any] = planned.plan if planned else {}
+def plan_of(value: Mapping[str, Any], automaton: Automaton) -> BranchingPlan:
+    """The plan of what `plan --json` prints, as far as it can be drawn: without states."""
     segments = {}
     for item in value.get("segments", ()):
         segment = Segment(
@@ -203,7 +203,7 @@ def _plan(log: Log, automaton: Automaton) -> BranchingPlan:
         )
         if segment.target in automaton.checkpoints:
             segments[segment.target] = segment
-    status = planned.status if planned else "ok"
+    status = value.get("status", "ok")
     return BranchingPlan("partial" if status != "ok" else "ok", segments, None)
 
 

@@ -2,12 +2,23 @@
 
 from __future__ import annotations
 
+import contextlib
+import os
+import signal
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
+from polaris_nl.model.errors import PolarisError
 from polaris_nl.session import Session
 from polaris_tui.keeping import keeping_path, leftovers, tidied
+from polaris_tui.messages import HungUp
+from polaris_tui.remote import live_runs, runs_folder
+from polaris_tui.running import Running
 from polaris_tui.settings import Settings, read_settings, settings_path
+
+if TYPE_CHECKING:
+    from polaris_tui.app import PolarisApp
 
 
 def start(session: Session, *, log: Path | None = None, plain: bool = False) -> int:
@@ -38,13 +49,58 @@ def start(session: Session, *, log: Path | None = None, plain: bool = False) -> 
             kept=kept and kept_at is not None,
             leftovers=left,
             log=log,
+            listens_at=runs_folder(),
+            elsewhere=_of_world(session.world.name),
             settings_file=str(settings_path()),
         )
-        code = app.run(mouse=settings.mouse)
+        code = _on_the_screen(app, settings.mouse)
     finally:
         if kept and kept_at is not None and tidied(kept_at) and session.path == kept_at:
             sys.stdout.write(f"The program is kept. Go on with: polaris-nl tui {kept_at}\n")
     return int(code or 0)
+
+
+def _of_world(world: str) -> list[Path]:
+    """Where runs of a world listen."""
+    from polaris_tui.remote import RemoteRun
+
+    found = []
+    for path in live_runs():
+        with contextlib.suppress(PolarisError):
+            run = RemoteRun(path, lambda message: None)
+            run.leave()
+            if run.world == world:
+                found.append(path)
+    return found
+
+
+def _on_the_screen(app: PolarisApp, mouse: bool) -> int | None:
+    """Runs the application; where the terminal goes away, a run goes on until its end."""
+
+    def hung_up(*_: object) -> None:
+        _let_go()
+        app.tell(HungUp())
+
+    signal.signal(signal.SIGHUP, hung_up)
+    code: int | None = 1
+    try:
+        code = app.run(mouse=mouse)
+    except OSError:
+        if sys.__stdin__ is not None and sys.__stdin__.isatty():
+            raise
+    if app.state.hung_up:
+        _let_go()
+        if isinstance(app.state.current, Running):
+            app.state.current.wait(None)
+    return code
+
+
+def _let_go() -> None:
+    """Takes nothing from the terminal that is gone, and gives it nothing: both would fail."""
+    nothing = os.open(os.devnull, os.O_RDWR)
+    for stream in (0, 1, 2):
+        os.dup2(nothing, stream)
+    os.close(nothing)
 
 
 def _lines(session: Session, settings: Settings, log: Path | None) -> int:

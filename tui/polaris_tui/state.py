@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from polaris_nl.automaton.automaton import START
 from polaris_nl.model.wording import Wording
@@ -17,6 +18,9 @@ from polaris_tui.scene import Reading
 from polaris_tui.stepping import Steps
 from polaris_tui.styles import Look
 from polaris_tui.transcript import Entry, Exchange, Transcript
+
+if TYPE_CHECKING:
+    from polaris_tui.remote import RemoteRun
 
 
 @dataclass
@@ -38,6 +42,7 @@ class State:
         asks_to_start: a key has asked for a run, so that a menu asks for the yes.
         kept: the program has no name yet, and is kept in a file of the application's own.
         leaving: the user has asked to quit while a run went on.
+        hung_up: the terminal is gone while a run went on.
         slow: the plan has been in the making for a while.
     """
 
@@ -56,7 +61,7 @@ class State:
     reading: Reading | None = None
     read_wording: Wording | None = None
     choosing: Choosing = Choosing()
-    current: Running | None = None
+    current: Running | RemoteRun | None = None
     ran: Snapshot | None = None
     awaited_plan: BranchingPlan | None = None
     awaited: tuple[int, int, BranchingPlan | None] | None = None
@@ -64,6 +69,7 @@ class State:
     asks_to_start: bool = False
     kept: bool = False
     leaving: bool = False
+    hung_up: bool = False
     slow: bool = False
 
     def note(self, *entries: Entry, said: str = "") -> int:
