@@ -50,8 +50,9 @@ class Tmux:
         return self("capture-pane", "-p")
 
     def see(self, *texts: str, seconds: float = LIMIT_S) -> str:
+        """Waits for texts, which may be wrapped."""
         deadline = time.monotonic() + seconds
-        while not all(text in (screen := self.screen()) for text in texts):
+        while not all(text in (screen := self.screen()) or text in _flat(screen) for text in texts):
             assert time.monotonic() < deadline, screen
             time.sleep(0.05)
         return screen
@@ -74,6 +75,10 @@ class Tmux:
         self.see(then)
 
 
+def _flat(screen: str) -> str:
+    return " ".join(screen.split())
+
+
 class Sshd:
     """A server with keys of its own, for this user alone.
 
@@ -84,6 +89,9 @@ class Sshd:
     def __init__(self, folder: Path) -> None:
         self.folder = folder
         self.state = folder / "state"
+        settings = folder / "config" / "polaris-nl" / "tui.toml"
+        settings.parent.mkdir(parents=True)
+        settings.write_text(f'logs = "{folder / "logs"}"\n')
         with socket.socket() as probe:
             probe.bind(("127.0.0.1", 0))
             self._port = probe.getsockname()[1]
@@ -142,6 +150,11 @@ class Sshd:
             + [part for option in options for part in ("-o", option)]
             + [f"{getpass.getuser()}@127.0.0.1", there]
         )
+
+    @property
+    def process(self) -> int:
+        """The server's process."""
+        return self._process.pid
 
     def close(self) -> None:
         self._process.terminate()

@@ -129,7 +129,7 @@ def test_the_caregiving_program_by_keys_alone(terminal: Tmux, sshd: Sshd, tmp_pa
     terminal.see("Which log?")
     terminal.choose("1", "> Log ")
     terminal.keys("End")
-    terminal.see("The run is done.")
+    terminal.see("The program is done.")
     terminal.keys("c")
     terminal.see("What led to event", "I go home")
     terminal.keys("/")
@@ -138,3 +138,102 @@ def test_the_caregiving_program_by_keys_alone(terminal: Tmux, sshd: Sshd, tmp_pa
     terminal.see("only: topic=transition", "Lunch is dismissed: on to not now.")
     terminal.keys("C-q")
     terminal.see("code 0")
+
+
+def test_the_tidying_program_by_sentences_alone(terminal: Tmux, sshd: Sshd, tmp_path: Path) -> None:
+    file = tmp_path / "dishes.polaris.json"
+    opened(terminal, sshd, file, "dinner-party")
+    for sentence, seen in (
+        ("Put the cup and the plate on the countertop.", "ok, "),
+        ("Wait until both are on the drying rack.", "once the cup and the plate are on"),
+        (
+            "Open the cupboard, then put both dishes in the cupboard.",
+            "put the plate in the cupboard",
+        ),
+    ):
+        terminal.type(sentence)
+        terminal.see(seen, "The plan takes")
+    assert ["(at cup drying-rack)", "(at plate drying-rack)"] in conditions(file)
+    terminal.type("show the steps")
+    terminal.see("Plan, step by step", "Step 1 of")
+    terminal.type(":last-step")
+    terminal.see("Reached: ", "in the cupboard")
+    terminal.type("run it")
+    terminal.see("Shall I start? Say yes or no.")
+    terminal.type("yes")
+    terminal.see("running")
+    terminal.see("I wait.", seconds=4 * LIMIT_S)
+    terminal.type("the cup and the plate are on the drying rack")
+    terminal.see("The run is over: ", seconds=6 * LIMIT_S)
+    terminal.type(":log")
+    terminal.see("Which log?")
+    terminal.choose("1", "Log ")
+    terminal.type(":chain")
+    terminal.see("What led to event")
+    terminal.type("quit")
+    terminal.see("code 0")
+
+
+def test_kill_loses_no_edit(terminal: Tmux, sshd: Sshd, tmp_path: Path) -> None:
+    terminal.start(sshd.command("tui", "--world", "care-home"))
+    terminal.see("empty program", "(no name)")
+    for sentence in ("open the fridge", "go to the hall"):
+        terminal.type(sentence)
+        terminal.see(f"> {sentence}", "The plan takes")
+    (kept,) = (sshd.state / "polaris-nl" / "unsaved").glob("*.polaris.json")
+    os.kill(int(re.findall(r"-(\d+)\.", kept.name)[0]), signal.SIGKILL)
+    terminal.see("code ")
+    again = Tmux(tmp_path, "again")
+    try:
+        again.start(sshd.command("tui", "--world", "care-home"))
+        again.see("empty program", ":recover brings it back.")
+        again.type(":recover")
+        again.see("Which one?", "Open the fridge, then go to the hall.")
+        again.keys("Enter")
+        again.see("opened: open the fridge", "hall: go to the hall")
+        again.type("quit")
+        again.see("code 0")
+    finally:
+        again("kill-server")
+
+
+def test_a_dropped_line_neither_stops_nor_orphans_a_run(
+    terminal: Tmux, sshd: Sshd, tmp_path: Path
+) -> None:
+    file = tmp_path / "lunch.polaris.json"
+    opened(terminal, sshd, file, "care-home")
+    terminal.type("tell the resident that lunch is ready, and once she dismisses it, go home")
+    terminal.see("The plan takes")
+    terminal.type("run it")
+    terminal.see("Shall I start?")
+    terminal.type("yes")
+    terminal.see("> running")
+    (listens,) = (sshd.state / "polaris-nl" / "runs").glob("*.sock")
+    runner = int(listens.stem)
+    terminal("kill-server")  # The terminal, the ssh client and with them the line are gone.
+    deadline = time.monotonic() + LIMIT_S
+    while connected(sshd):
+        assert time.monotonic() < deadline
+        time.sleep(0.05)
+    os.kill(runner, 0)
+    again = Tmux(tmp_path, "again")
+    try:
+        again.start(sshd.command("tui", str(file), "--world", "care-home"))
+        again.see("This run was begun in another terminal.", "Run", "tell the resident")
+        again.see("I wait.", "lunch is dismissed", seconds=2 * LIMIT_S)
+        again.keys("F9")
+        again.see("The run is over: stopped.", "polaris-nl review")
+        again.keys("C-q")
+        again.see("code 0")
+    finally:
+        again("kill-server")
+    while Path(f"/proc/{runner}").exists():
+        assert time.monotonic() < deadline + LIMIT_S
+        time.sleep(0.05)
+    assert not listens.exists()
+
+
+def connected(sshd: Sshd) -> bool:
+    """Whether a client is still connected."""
+    children = Path(f"/proc/{sshd.process}/task/{sshd.process}/children").read_text().split()
+    return bool(children)

@@ -147,8 +147,13 @@ class Pane(Widget, can_focus=True):
         elif self._spanned:
             self._reveal(self._point)
         elif not self.has_focus and (moved or before != self._rows):
-            self._point = self._mark if moved else self._news(before)
+            news = [self._mark] if moved else self._news(before)
+            self._point = news[0] if news else None
             self._reveal(self._point)
+            if (
+                self._point is not None and news[-1] is not None
+            ):  # as much of it as there is room for
+                self._top = max(self._top, min(self._point, news[-1] - self.text_height + 1))
         self._top = max(0, min(self._top, self._last_top))
         self._repaint()
 
@@ -186,10 +191,10 @@ class Pane(Widget, can_focus=True):
                 self._cursor = min(same, key=lambda i: abs(i - self._cursor))
         self._cursor = max(0, min(self._cursor, len(self._rows) - 1))
 
-    def _news(self, before: tuple[Row, ...]) -> int | None:
+    def _news(self, before: tuple[Row, ...]) -> list[int | None]:
         known = {(row.text, row.checkpoint) for row in before}
-        fresh = (i for i, r in enumerate(self._rows) if (r.text, r.checkpoint) not in known)
-        return next(fresh, None) if before else None
+        fresh = [i for i, r in enumerate(self._rows) if (r.text, r.checkpoint) not in known]
+        return [fresh[0], fresh[-1]] if before and fresh else []
 
     def _marked_row(self) -> int | None:
         """The first of the last rows in a row that are about it: a conditional stands higher up."""

@@ -6,6 +6,7 @@ It lies in the configuration folder (XDG): `polaris-nl/tui.toml`. All fields, wi
     glyphs = "auto"      # auto, unicode or ascii
     mouse = false        # true: a click goes to a row; the terminal's own selecting needs Shift then
     tree = "auto"        # auto: a drawn tree from 140 columns on; always or never
+    logs = ""            # the folder for the logs of runs; "" for the usual one
 
     [keys]               # other keys for actions, by the names that F10 shows; "" takes a key away
     next-problem = "f"
@@ -41,6 +42,7 @@ class Settings:
         glyphs: `auto` (as the terminal says), `unicode` or `ascii`.
         mouse: whether clicks are taken.
         tree: `auto`, `always` or `never`: whether the program is drawn as a tree at first.
+        logs: the folder for the logs of runs; "" for the usual one.
         keys: other keys for actions, by their ids.
     """
 
@@ -48,11 +50,17 @@ class Settings:
     glyphs: str = "auto"
     mouse: bool = False
     tree: str = "auto"
+    logs: str = ""
     keys: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     def glyphs_for_terminal(self) -> Glyphs:
         """The signs to draw with."""
         return {"unicode": UNICODE, "ascii": ASCII}.get(self.glyphs) or glyphs_for()
+
+    @property
+    def logs_folder(self) -> Path | None:
+        """The folder for the logs of runs; None for the usual one."""
+        return Path(self.logs).expanduser() if self.logs else None
 
     @property
     def keymap(self) -> Keymap:
@@ -94,7 +102,7 @@ def settings_of(value: Mapping[str, Any]) -> Settings:
     Raises:
         FormatError: as `read_settings`.
     """
-    known = (*_CHOICES, "mouse", "keys")
+    known = (*_CHOICES, "mouse", "logs", "keys")
     for name in value:
         if name not in known:
             raise FormatError(f"There is no setting {name}.{did_you_mean(name, known)}")
@@ -102,7 +110,11 @@ def settings_of(value: Mapping[str, Any]) -> Settings:
     mouse = value.get("mouse", False)
     if not isinstance(mouse, bool):
         raise FormatError("mouse is true or false.")
-    settings = Settings(mouse=mouse, keys=_keys(value.get("keys", {})), **chosen)
+    logs = value.get("logs", "")
+    if not isinstance(logs, str):
+        raise FormatError('logs is a folder, such as "~/robot-logs".')
+    keys = _keys(value.get("keys", {}))
+    settings = Settings(mouse=mouse, logs=logs, keys=keys, **chosen)
     for key, one, other in clashes(settings.keymap):
         raise FormatError(
             f"The key {key} means both {one.id} and {other.id}; give one of them another."

@@ -46,6 +46,7 @@ def start(session: Session, *, log: Path | None = None, plain: bool = False) -> 
         app = PolarisApp(
             session,
             settings,
+            logs=settings.logs_folder,
             kept=kept and kept_at is not None,
             leftovers=left,
             log=log,
@@ -120,7 +121,9 @@ def _lines(session: Session, settings: Settings, log: Path | None) -> int:
         settings.glyphs_for_terminal(),
         settings.keymap,
     )
-    talk = Plain(session, lambda line: print(line, flush=True), scene, width())
+    talk = Plain(
+        session, lambda line: print(line, flush=True), scene, width(), logs=settings.logs_folder
+    )
     if log is not None:
         talk.open_log(log)
     talk.work(typed_lines())
