@@ -56,7 +56,11 @@ def wrapped(
         action: that all rows are about, by its number.
     """
     rest = " " * len(first) if rest is None else rest
-    lines = _folded(plain(text), max(width, len(rest) + 20), first, rest)
+    text, width = plain(text), max(width, len(rest) + 20)
+    whole = f"{first}{text}".rstrip()
+    if cells(whole) <= width:
+        return [Row(whole.replace(NO_BREAK, " "), tone, checkpoint, action)]
+    lines = _folded(text, width, first, rest)
     shown = (line.replace(NO_BREAK, " ") for line in lines or [first.rstrip()])
     return [Row(line, tone, checkpoint, action) for line in shown]
 

@@ -93,6 +93,10 @@ def _write(
 ) -> None:
     (top, left), (bottom, right) = start, end
     room = right - left - 1
+    if bottom - top < 2 and texts:  # too low for an inside: the name stands on the wall
+        for column, sign in enumerate(cut(texts[0], room, glyphs.more)):
+            grid[top][left + 1 + column] = sign
+        return
     for offset, text in enumerate(texts):
         line = top + 1 + offset
         if line >= bottom:

@@ -140,8 +140,11 @@ class Sshd:
             "LANG": "C.UTF-8",
         }
         inner = shlex.join(
-            ["env", *(f"{k}={v}" for k, v in variables.items())]
-            + [sys.executable, "-m", "polaris_nl.cli", *arguments]
+            [
+                "env",
+                *(f"{k}={v}" for k, v in variables.items()),
+                *(sys.executable, "-m", "polaris_nl.cli", *arguments),
+            ]
         )
         there = f"cd {shlex.quote(str(self.folder))} && exec {inner}"
         options = ("StrictHostKeyChecking=no", "UserKnownHostsFile=/dev/null", "LogLevel=ERROR")

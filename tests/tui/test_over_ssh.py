@@ -1,4 +1,4 @@
-"""The real program at 80x24 over a real SSH line: by keys alone, by sentences alone, and when the line drops."""
+"""The real program at 80x24 over a real SSH line: by keys, by sentences, and when the line drops."""
 
 from __future__ import annotations
 

@@ -28,6 +28,7 @@ from polaris_nl.model.state import Mutexes
 from polaris_nl.model.wording import PlainWording
 from polaris_nl.planning.result import BranchingPlan
 from polaris_nl.render.explanation import offers
+from polaris_nl.render.remembered import remembered
 from polaris_nl.render.timeline import Stop, branch_stops
 from polaris_nl.session import Session
 from polaris_nl.snapshot import Answer, Snapshot
@@ -54,6 +55,8 @@ from polaris_tui.transcript import Entry, answer_entries, event_entry
 
 PATIENCE_S = 0.15
 """How long a new plan may take before the screen says that it is being made: most come sooner."""
+SLOW_S = 0.5
+"""How often the parts of a plan that takes long are shown."""
 END_S = 5.0
 """How long leaving waits for a run to stop, and for what the session is doing."""
 
@@ -117,6 +120,7 @@ class PolarisApp(App[int]):
         self._live = live
         self._first_log = log
         self._talk = talk
+        self._patient = False  # a timer is set to show that a plan is still being made
         self._listens_at = listens_at
         self._elsewhere = tuple(elsewhere)
         glyphs = settings.glyphs_for_terminal()
@@ -194,7 +198,7 @@ class PolarisApp(App[int]):
         if message.failure:
             self.state.note(Entry(message.failure, "! ", "bad"))
         else:
-            self.state.wording = self.session.wording
+            self.state.wording = remembered(self.session.wording)
         if self._elsewhere:
             self.attach()
         self.draw()
@@ -202,7 +206,9 @@ class PolarisApp(App[int]):
     def on_changed(self) -> None:
         """Shows the newest program and plan."""
         if self.session.snapshot.planning == "planning":
-            self.set_timer(PATIENCE_S, self._still_planning)
+            if not self._patient:  # Parts of a plan may come many times a second.
+                self._patient = True
+                self.set_timer(SLOW_S if self.state.slow else PATIENCE_S, self._still_planning)
         else:
             self.state.slow = False
             self._tell_news()
@@ -210,6 +216,7 @@ class PolarisApp(App[int]):
             self.draw()
 
     def _still_planning(self) -> None:
+        self._patient = False
         self.state.slow = self.session.snapshot.planning == "planning"
         self.draw()
 
@@ -302,7 +309,7 @@ class PolarisApp(App[int]):
         """Shows a log."""
         shown = message.replay.shown("")
         self.state.reading = Reading(message.replay, shown[0] if shown else 1)
-        self.state.read_wording = message.wording
+        self.state.read_wording = remembered(message.wording)
         self.state.view = "review"
         self.draw()
         self.board.main.focus()

@@ -107,7 +107,7 @@ class Conversation:
 
     def open_log(self, path: Path, ticket: int) -> None:
         """Opens a log."""
-        self._put(_Job(lambda: self._open_log(path), ticket))
+        self._put(_Job(lambda: self._open_log(path, ticket), ticket))
 
     def load(self, path: Path, label: str, ticket: int) -> None:
         """Takes another program from a file, as a step that can be undone."""
@@ -174,7 +174,7 @@ class Conversation:
         text = purpose_in_words(self._reasons, Step(*found), self._session.wording)
         self._tell(Explained(snapshot.revision, number, text))
 
-    def _open_log(self, path: Path) -> None:
+    def _open_log(self, path: Path, ticket: int) -> None:
         from polaris_tui.replay import open_replay
 
         replay = open_replay(path, self._session.world)
@@ -184,6 +184,10 @@ class Conversation:
             from polaris_nl.language.understanding import Understanding
 
             wording = Understanding(replay.world).wording
+        count = (
+            f"{len(replay.events)} events, {len(replay.shown(''))} of them with something to read."
+        )
+        self._tell(Told(ticket, Entry(count)))
         self._tell(Opened(replay, wording))
 
     def _load(self, path: Path, label: str, ticket: int) -> None:

@@ -142,7 +142,8 @@ def way_rows(scene: Scene, now: Progress, width: int) -> list[Row]:
         leaf = now.reached
     stops = branch_stops(automaton, plan, leaf, scene.wording)
     done = _done(stops, now)
-    picked = done if now.activity and done < len(stops) else None
+    going_on = now.activity or not now.outcome.startswith("done")
+    picked = done if going_on and done < len(stops) else None
     return timeline_rows(stops, picked, scene.glyphs, width, frozenset(plan.segments), done)
 
 
@@ -158,7 +159,7 @@ def _done(stops: Sequence[Stop], now: Progress) -> int:
 
 def _behind(stop: Stop, now: Progress) -> bool:
     """Whether the robot is past a stop on the way that it is on."""
-    number = now.at[1] if now.at else None
+    number = now.last[1] if now.last else None
     earlier = number is not None and stop.number is not None and stop.number < number
     return stop.kind == "condition" or earlier
 

@@ -52,6 +52,7 @@ class Progress:
         activity: what goes on, "" where nothing does.
         at: what the robot is at, as rows of the outline have it: a checkpoint's id and the number of
             an action on the way to it, or None where it has been reached.
+        last: where it was last, also when the run is over.
         reached: the checkpoint reached last.
         heading: the checkpoint that is aimed for, or "".
         expected: what the action that is under way is to bring about.
@@ -65,6 +66,7 @@ class Progress:
     started: float | None = None
     activity: Activity = ""
     at: Place | None = None
+    last: Place | None = None
     reached: str = START
     heading: str = ""
     expected: tuple[Literal, ...] = ()
@@ -83,9 +85,11 @@ def advanced(progress: Progress, event: Event, plan: BranchingPlan) -> Progress:
             state = progress.state.change(_literals(event.removed), _literals(event.added))
             return replace(progress, state=state)
         case GoalSent():
+            at = (event.checkpoint, _number(event, plan))
             return replace(
                 progress,
-                at=(event.checkpoint, _number(event, plan)),
+                at=at,
+                last=at,
                 heading=event.checkpoint,
                 expected=tuple(_literals(event.literals)),
                 waiting=(),
@@ -97,6 +101,7 @@ def advanced(progress: Progress, event: Event, plan: BranchingPlan) -> Progress:
             return replace(
                 progress,
                 at=(event.checkpoint, None),
+                last=(event.checkpoint, None),
                 reached=event.checkpoint,
                 heading="",
                 expected=(),

@@ -20,6 +20,7 @@ from polaris_nl.execution.events import (
     Halted,
     Heard,
     Observed,
+    PersonActed,
     Planned,
     Replanned,
     RunStarted,
@@ -102,6 +103,8 @@ class Replay:
         for kind in BEFORE_A_RUN:
             found.update(_last(before, kind, started or number))
         decided = max(_last(before, TransitionTaken, number), default=0)
+        if isinstance(self.events[number - 1], TransitionTaken):
+            decided = number
         if decided:
             found.add(decided)
             found.update(_made_by(self.events, decided))
@@ -135,6 +138,8 @@ def _made_by(events: Sequence[Event], decided: int) -> Iterator[int]:
             changed = {*earlier.added, *earlier.removed}
         elif isinstance(earlier, CommandGiven):
             changed = set(earlier.literals)
+        elif isinstance(earlier, PersonActed):
+            changed = set(earlier.effect)
         if wanted & changed:
             yield number
         elif isinstance(earlier, Waiting):

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from polaris_nl.execution.events import Event
+from collections.abc import Iterable
+
+from polaris_nl.execution.events import Event, Observed, Planned
 from polaris_nl.model.formula import Literal, parse_formula
+from polaris_nl.model.text import listed, sentence
 from polaris_nl.render.layout import Row, cut, wrapped
 from polaris_nl.render.log import event_rows
 from polaris_tui.panels import expectation_rows, way_rows
@@ -39,7 +42,12 @@ def review_rows(scene: Scene, width: int) -> list[Row]:
 def _event(reading: Reading, number: int, scene: Scene, width: int) -> list[Row]:
     event = reading.replay.events[number - 1]
     rows = event_rows(
-        event.time - start(reading), event.severity, text_of(event), scene.glyphs, width, number
+        event.time - start(reading),
+        event.severity,
+        text_of(event, scene),
+        scene.glyphs,
+        width,
+        number,
     )
     first = rows[0]  # One row an event: what is cut off stands below in full
     text = (
@@ -54,9 +62,20 @@ def start(reading: Reading) -> float:
     return events[0].time if events else 0.0
 
 
-def text_of(event: Event) -> str:
-    """What an event says; its kind where it says nothing."""
-    return event.text or type(event).__name__
+def text_of(event: Event, scene: Scene) -> str:
+    """What an event says; what it is where it says nothing."""
+    if event.text:
+        return event.text
+    if isinstance(event, Planned):
+        return f"The plan is {event.status}."
+    if isinstance(event, Observed):
+        facts = [*_facts(event.added), *(x.negation for x in _facts(event.removed))]
+        return sentence(f"seen: {listed([scene.wording.fact(x) for x in facts])}")
+    return type(event).__name__
+
+
+def _facts(texts: Iterable[str]) -> list[Literal]:
+    return [x for text in texts if isinstance(x := parse_formula(text), Literal)]
 
 
 def detail_heading(scene: Scene) -> str:
@@ -83,7 +102,7 @@ def detail_rows(scene: Scene, width: int) -> list[Row]:
             for number in reading.replay.chain(reading.number)
             for row in _event(reading, number, scene, width)
         ]
-    rows = wrapped(text_of(event), width, f"{seconds:.1f} s: ", "  ", "strong")
+    rows = wrapped(text_of(event, scene), width, f"{seconds:.1f} s: ", "  ", "strong")
     if reading.below == "compare":
         return [*rows, *_compared(scene, reading, width)]
     return [*rows, *way_rows(scene, scene.progress, width), *_fields(event, scene, width)]
@@ -103,8 +122,6 @@ def _fields(event: Event, scene: Scene, width: int) -> list[Row]:
     """What became true and false, in words, where the event says so."""
     rows: list[Row] = []
     for name, lead in (("added", "Now: "), ("removed", "No longer: "), ("observed", "Seen: ")):
-        texts = getattr(event, name, ())
-        facts = [x for text in texts if isinstance(x := parse_formula(text), Literal)]
-        said = [scene.wording.fact(x) for x in facts]
+        said = [scene.wording.fact(x) for x in _facts(getattr(event, name, ()))]
         rows += wrapped("; ".join(said), width, lead) if said else []
     return rows

@@ -20,6 +20,9 @@ from polaris_tui.settings import Settings, read_settings, settings_path
 if TYPE_CHECKING:
     from polaris_tui.app import PolarisApp
 
+SWITCH_S = 0.001
+"""How long planning may keep the interpreter from a key that was pressed; Python's own is five times that."""
+
 
 def start(session: Session, *, log: Path | None = None, plain: bool = False) -> int:
     """Runs the application until the user quits; returns the exit code.
@@ -32,6 +35,7 @@ def start(session: Session, *, log: Path | None = None, plain: bool = False) -> 
     Raises:
         FormatError: the settings aren't as they should be.
     """
+    sys.setswitchinterval(SWITCH_S)
     settings = read_settings()
     kept = session.path is None
     if kept:
