@@ -87,6 +87,8 @@ def test_screens(
     play: Play, size: tuple[int, int, str], log: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     width, height, look = size
+    # A busy machine must not change what is said.
+    monkeypatch.setattr("polaris_tui.conversation.ANSWER_WAIT_S", 60.0)
     if look != "terminal":
         monkeypatch.delenv("NO_COLOR")
     pictures: list[str] = []

@@ -201,7 +201,7 @@ ACTIONS: tuple[Action, ...] = (
     _action("Program", "disconnect", "unconnect it from the one before", "", "X", _picked, "", _EDITED),
     _action("Program", "mend", "ways out of the problems", "ctrl+r", "f", _repairs, "mend"),
     _action("Program", "pick", "go to a checkpoint by its name", "", "slash", _filled, "", _EDITED),
-    _action("Program", "why", "why it is there, what it takes", "", "w", _always, "why", _EDITED),
+    _action("Program", "why", "why it is there, what it takes", "", "w", _always, "why", (*_EDITED, "plan")),
     _action("Program", "undo", "undo", "f7 ctrl+z", "u", _undoable),
     _action("Program", "redo", "redo", "f8 ctrl+y", "U", _redoable),
     _action("Program", "recover", "a program that an earlier session left unsaved", "", "", _leftover),

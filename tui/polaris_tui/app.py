@@ -376,6 +376,14 @@ class PolarisApp(App[int]):
                 state.reading = replace(state.reading, number=row.action)
         self.call_later(self.draw)
 
+    def pane_entered(self, pane: Pane) -> None:
+        """Goes on where the program was changed last."""
+        row, state = pane.row, self.state
+        program = pane is self.board.main and state.view == "program" and not self.as_tree
+        if program and (row is None or row.checkpoint != state.picked):
+            pane.pick(state.picked)
+        self.call_later(self.draw)
+
     def pane_left(self, pane: Pane) -> None:
         """Shows other keys."""
         self.call_later(self.draw)

@@ -39,7 +39,11 @@ class Owner(Protocol):
         ...
 
     def pane_moved(self, pane: Pane) -> None:
-        """The cursor is on another row, or the pane has got the focus."""
+        """The cursor is on another row."""
+        ...
+
+    def pane_entered(self, pane: Pane) -> None:
+        """The pane has got the focus."""
         ...
 
     def pane_left(self, pane: Pane) -> None:
@@ -301,7 +305,7 @@ class Pane(Widget, can_focus=True):
         if not self._spanned:
             self._cursor = max(self._top, min(self._cursor, self._top + self.text_height - 1))
         self._cursor = max(0, min(self._cursor, len(self._rows) - 1))
-        self._owner.pane_moved(self)
+        self._owner.pane_entered(self)
         self._repaint()
 
     def on_blur(self) -> None:
@@ -325,7 +329,7 @@ class Pane(Widget, can_focus=True):
         """Moves the cursor to the last row in a row of a checkpoint's own: its name."""
         rows = [n for n, r in enumerate(self._rows) if r.checkpoint == checkpoint and not r.action]
         if rows:
-            self.go_to(next((n for n in rows if n >= rows[0] and n - 1 not in rows), rows[0]))
+            self.go_to(next((n for n in reversed(rows) if n - 1 not in rows), rows[0]))
 
 
 def _difference(old: Line, new: Line) -> tuple[int, int] | None:
