@@ -227,7 +227,7 @@ def test_the_program_file_in_an_editor(
     play: Play, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     script_file = tmp_path / "edit"
-    script_file.write_text("#!/bin/sh\nsed -i 's/\"opened\"/\"cold\"/' \"$1\"\n")
+    script_file.write_text('#!/bin/sh\nsed -i \'s/"opened"/"cold"/\' "$1"\n')
     script_file.chmod(0o755)
     broken = tmp_path / "break"
     broken.write_text('#!/bin/sh\necho "{" > "$1"\n')

@@ -368,7 +368,8 @@ _IN_A_MENU = "Up, Down, Enter choose  letters filter  {back} back"
 def footer(place: str, keymap: Keymap, now: Situation, room: int) -> str:
     """Keys with their meanings, as many as fit; those that can't be used now are left out."""
     if place == "ask":
-        return f"Enter takes it  {keymap.first('prompt')} back"
+        text = f"Enter takes it  {keymap.first('prompt')} back"
+        return text if len(text) <= room else ""
     if place == "menu":
         text = _IN_A_MENU.format(back=keymap.first("prompt"))
         return text if len(text) <= room else f"{keymap.first('prompt')} back"

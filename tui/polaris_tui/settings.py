@@ -9,7 +9,7 @@ It lies in the configuration folder (XDG): `polaris-nl/tui.toml`. All fields, wi
     logs = ""            # the folder for the logs of runs; "" for the usual one
 
     [keys]               # other keys for actions, by the names that F10 shows; "" takes a key away
-    next-problem = "f"
+    next-problem = "j"
     undo = "f7 u"
 """
 
