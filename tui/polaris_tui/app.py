@@ -6,51 +6,27 @@ back is a message here. Each message makes a new scene, and the panes are drawn 
 
 from __future__ import annotations
 
-import contextlib
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import replace
-from pathlib import Path
-from typing import ClassVar
 
-from textual.app import App, ComposeResult
 from textual.events import Resize
-from textual.message import Message
-from textual.widget import Widget
 
 from polaris_nl.answers import change_in_words
-from polaris_nl.automaton.automaton import START, Automaton
-from polaris_nl.automaton.program import write_program
 from polaris_nl.execution.state import HumanCommand
-from polaris_nl.logs.paths import new_log_path
-from polaris_nl.model.errors import PolarisError
-from polaris_nl.model.state import Mutexes
-from polaris_nl.model.wording import PlainWording
-from polaris_nl.planning.result import BranchingPlan
-from polaris_nl.render.explanation import offers
 from polaris_nl.render.remembered import remembered
-from polaris_nl.render.timeline import Stop, branch_stops
-from polaris_nl.session import Session
-from polaris_nl.snapshot import Answer, Snapshot
+from polaris_nl.snapshot import Answer
 from polaris_tui import messages as told
-from polaris_tui import stepping, styles
-from polaris_tui.actions import Keymap, Situation
-from polaris_tui.authoring import Desk
+from polaris_tui.actions import NO_RUN
 from polaris_tui.board import Board
 from polaris_tui.completion import names_of
-from polaris_tui.conversation import Conversation
-from polaris_tui.deeds import Deeds, editor
-from polaris_tui.keeping import Leftover
-from polaris_tui.layout import TREE
-from polaris_tui.menus import Ask, Change, Menu
+from polaris_tui.deeds import Deeds
+from polaris_tui.face import Face
 from polaris_tui.pane import Pane
-from polaris_tui.phrases import action_asked, order_in, view_asked
-from polaris_tui.progress import Progress, advanced
+from polaris_tui.phrases import Order, action_asked, order_in, view_asked
+from polaris_tui.progress import advanced
 from polaris_tui.running import Running
-from polaris_tui.scene import Reading, Scene
-from polaris_tui.settings import Settings
-from polaris_tui.state import State
-from polaris_tui.styles import LOOKS, Look
+from polaris_tui.scene import Reading
 from polaris_tui.transcript import Entry, answer_entries, event_entry
 
 PATIENCE_S = 0.15
@@ -63,92 +39,18 @@ END_S = 5.0
 NO_FILE = "Nothing is saved without a program file; to keep this, start with: polaris-nl tui FILE"
 KEPT = "This program has no name yet, and is kept all the same; :save-as gives it one."
 LEFT = "An earlier session ended without a name for its program; :recover brings it back."
-NO_RUN = 'There is no run. F5, or "run it", starts one.'
 RUN_GOES_ON = "The run goes on with the program that was read out; this counts from the next run."
-ATTACHED = (
-    "This run was begun in another terminal. It can be stopped from here; quitting lets it go on."
-)
 STOPPED_FIRST = "You said stop before it began, so nothing runs."
 ONE_RUN = "A run is going on. Stop it with F9 before you start another."
 
 
-class PolarisApp(App[int]):
-    """The application.
+class PolarisApp(Face):
+    """The application, with what it hears from threads and widgets; see `BaseApp` for its arguments."""
 
-    Args:
-        session: program, language and planner; it belongs to the caller.
-        settings: the user's.
-        live: runs go in real time; otherwise as fast as the machine can.
-        logs: the folder for the logs of runs; the usual one by default.
-        kept: the program's file is not the user's, but one that keeps it until it has a name.
-        leftovers: what earlier sessions left unsaved.
-        log: a log to be opened at once.
-        listens_at: the folder where runs listen to other terminals; None for nowhere.
-        elsewhere: where runs of this world listen that go on already.
-        talk: starts listening, where something can.
-        settings_file: where settings are, for what is said about them.
-    """
-
-    ENABLE_COMMAND_PALETTE = False
-    CSS = styles.CSS
-    HORIZONTAL_BREAKPOINTS = styles.BREAKPOINTS
-    BINDINGS: ClassVar = []
-
-    def __init__(
-        self,
-        session: Session,
-        settings: Settings = Settings(),
-        *,
-        live: bool = True,
-        logs: Path | None = None,
-        kept: bool = False,
-        leftovers: Iterable[Leftover] = (),
-        log: Path | None = None,
-        listens_at: Path | None = None,
-        elsewhere: Iterable[Path] = (),
-        talk: Callable[[], None] | None = None,
-        settings_file: str = "the settings",
-    ) -> None:
-        super().__init__()
-        self.session = session
-        self.settings = settings
-        self.settings_file = settings_file
-        self.keymap: Keymap = settings.keymap
-        self.logs = logs
-        self.leftovers = tuple(leftovers)
-        self.animation_level = "none"
-        self._live = live
-        self._first_log = log
-        self._talk = talk
-        self._patient = False  # a timer is set to show that a plan is still being made
-        self._listens_at = listens_at
-        self._elsewhere = tuple(elsewhere)
-        glyphs = settings.glyphs_for_terminal()
-        self.state = State(
-            glyphs,
-            LOOKS[settings.theme],
-            PlainWording(session.world),
-            Progress(session.world.initial, activity="loading"),
-            tree={"always": True, "never": False}.get(settings.tree),
-            kept=kept,
-        )
-        for theme in styles.themes():
-            self.register_theme(theme)
-        self.theme = self.state.look.theme
-        self._unsubscribe: Callable[[], None] = lambda: None
-        self._focused_before: Widget | None = None
-        self._conversation = Conversation(session, self.tell)
-        self._deeds = Deeds(self, self.state)
-        self.board = Board(self, glyphs, self.state.look)
-        for action in self.keymap.actions:
-            if action.keys:
-                self._bindings.bind(
-                    ",".join(action.keys), f"do('{action.id}')", show=False, priority=action.first
-                )
-
-    def compose(self) -> ComposeResult:
-        """One screen."""
-        yield self.board
+    def make_board(self) -> Board:
+        """The panes, which tell this application of keys."""
+        self.deeds = Deeds(self, self.state)
+        return Board(self, self.state.glyphs, self.state.look)
 
     def on_mount(self) -> None:
         """Shows the first screen; language and planner are loaded behind it."""
@@ -184,13 +86,6 @@ class PolarisApp(App[int]):
         """The terminal is gone: leaves it alone, and lets a run go on (see `remote`)."""
         self.state.hung_up = self.state.current is not None
         self.exit(0)
-
-    # What the threads tell
-
-    def tell(self, message: Message) -> None:
-        """Sends a message from any thread; a screen that is gone already needs none."""
-        with contextlib.suppress(RuntimeError):
-            self.post_message(message)
 
     def on_warmed(self, message: told.Warmed) -> None:
         """Says things in the words of the domain from now on."""
@@ -244,7 +139,7 @@ class PolarisApp(App[int]):
         elif command == "run" and state.asks_to_start:
             state.asks_to_start = False
             if answer.snapshot.plan is not None and answer.snapshot.plan.segments:
-                self._deeds.confirm(answer.say)
+                self.deeds.confirm(answer.say)
         if answer.snapshot.planning == "planning":
             state.awaited = (message.ticket, answer.snapshot.revision, before)
             self._tell_news()
@@ -337,17 +232,19 @@ class PolarisApp(App[int]):
             self.exit(0)
         self.draw()
 
-    # What the user does; these are called by the widgets at once, so that keys keep their order
+    def order(self, order: Order) -> None:
+        """Commands the run."""
+        self.deeds.order(order)
 
     def action_do(self, id: str) -> None:
         """Does an action that a key means everywhere."""
-        self._deeds.perform(id)
+        self.deeds.perform(id)
 
     def pane_key(self, pane: Pane, key: str, character: str | None) -> bool:
         """Does what a letter means in a pane."""
         action = self.keymap.letter(key, self.state.view)
         if action is not None:
-            self._deeds.perform(action.id)
+            self.deeds.perform(action.id)
             return True
         if self.key_anywhere(key):
             return True
@@ -363,7 +260,7 @@ class PolarisApp(App[int]):
         """Does what a key means everywhere."""
         action = self.keymap.anywhere(key)
         if action is not None:
-            self._deeds.perform(action.id)
+            self.deeds.perform(action.id)
         return action is not None
 
     def pane_moved(self, pane: Pane) -> None:
@@ -392,21 +289,21 @@ class PolarisApp(App[int]):
         """Takes a line of the input line."""
         state = self.state
         if state.choosing.last is not None:
-            self._deeds.chosen(line)
+            self.deeds.chosen(line)
             self.draw()
             return
         view, order, action = view_asked(line), order_in(line), action_asked(line)
         if order and (state.current or order == "stop"):
             if state.current:
                 state.note(said=line)
-            self._deeds.order(order)
+            self.deeds.order(order)
         elif action is not None:
             known = any(a.id == action for a in self.keymap.actions)
-            self._deeds.perform(action if known else "actions")
+            self.deeds.perform(action if known else "actions")
         elif view is not None:
             state.view = view
         elif line.isdecimal() and state.current and 0 < int(line) <= len(state.progress.waiting):
-            self._deeds.perform("tell", line)
+            self.deeds.perform("tell", line)
         else:
             self.say(line)
         self.draw()
@@ -428,299 +325,3 @@ class PolarisApp(App[int]):
     def on_resize(self, event: Resize) -> None:
         """Shares the rows of the screen out anew."""
         self.call_after_refresh(self.draw)
-
-    # What the actions need
-
-    def say(self, sentence: str) -> None:
-        """Says a sentence, typed or meant by a key."""
-        ticket = self.state.note(said=sentence)
-        self._conversation.say(sentence, ticket, self.state.current)
-
-    @property
-    def busy(self) -> bool:
-        """Whether something that was asked for is still to be done."""
-        return self._conversation.busy
-
-    def edit(self, change: Change) -> None:
-        """Changes the program."""
-        self._conversation.edit(change, self.state.note(said=change.label))
-
-    def travel(self, steps: int) -> None:
-        """Goes back or forward in the program's history."""
-        word = "undo" if steps > 0 else "redo"
-        self._conversation.travel(steps, self.state.note(said=f"{word} {abs(steps)}"))
-
-    def explain(self, checkpoint: str, action: int | None) -> None:
-        """Says why something is in the program."""
-        found = self.session.snapshot.automaton.checkpoints.get(checkpoint)
-        name = found.name if found else checkpoint
-        asked = f"why action {action}?" if action else f"what about {name}?"
-        self._conversation.explain(checkpoint, action, self.state.note(said=asked))
-
-    def load(self, path: Path, label: str) -> None:
-        """Takes another program from a file."""
-        self._conversation.load(path, label, self.state.note(said=label))
-
-    def save_as(self, path: Path) -> None:
-        """Gives the program's file another name."""
-        self.state.kept = False
-        self._conversation.save_as(path, self.state.note(said=f"save as {path.name}"))
-
-    def open_log(self, path: Path) -> None:
-        """Opens a log."""
-        self._conversation.open_log(path, self.state.note(said=f"log {path.name}"))
-
-    def talk(self) -> None:
-        """Starts listening."""
-        if self._talk is not None:
-            self._talk()
-
-    def edit_file(self) -> None:
-        """Opens the program in the user's editor, and takes what it leaves."""
-        import shlex
-        import subprocess
-        import tempfile
-
-        with tempfile.TemporaryDirectory() as folder:
-            path = Path(folder) / "program.polaris.json"
-            try:
-                write_program(self.session.program, path)
-                with self.suspend():
-                    subprocess.run([*shlex.split(editor()), str(path)], check=False)
-                kept = path.rename(Path(folder) / "edited.polaris.json")
-                from polaris_nl.automaton.edits import ReplaceProgram
-                from polaris_nl.automaton.program import read_program
-
-                program = read_program(kept).automaton
-            except (PolarisError, OSError) as error:
-                self.state.note(Entry(f"The program stays as it was. {error}", "! ", "bad"))
-                return
-        if program == self.session.snapshot.automaton:
-            self.state.note(Entry("Nothing was changed."))
-        else:
-            self.edit(Change("edit the file", (ReplaceProgram(program),)))
-
-    def scroll_pane(self, pages: int) -> None:
-        """Scrolls the pane that has the focus, else the largest one."""
-        focused = self.focused
-        if isinstance(focused, Pane):
-            focused.scroll_rows(pages)
-        else:
-            board = self.board
-            (board.answers if self.state.view == "answers" else board.main).scroll_rows(pages)
-
-    def ask(self, question: Menu | Ask) -> None:
-        """Lets the input line serve a menu or take a text."""
-        if not self.board.prompt.has_focus:
-            self._focused_before = self.focused
-        if isinstance(question, Ask):
-            self.board.prompt.serve("ask", question.initial)
-        else:
-            self.board.prompt.serve("menu")
-        self.board.prompt.focus()
-
-    def asked_enough(self) -> None:
-        """Gives the input line back to sentences, and the focus to where it was."""
-        self.board.prompt.serve("sentence")
-        if self._focused_before is not None:
-            self._focused_before.focus()
-        self._focused_before = None
-
-    def pick(self, checkpoint: str) -> None:
-        """Goes to a checkpoint of the program."""
-        self.state.view = "program"
-        self.state.picked = checkpoint
-        self.draw()
-        self.board.main.focus()
-        self.board.main.pick(checkpoint)
-
-    def tell_briefly(self, text: str) -> None:
-        """Says something that isn't worth keeping twice."""
-        self.state.note(Entry(text))
-        self.draw()
-
-    def read_back(self, automaton: Automaton) -> str:
-        """A program in a sentence."""
-        return self.session.understanding.read_back(automaton)
-
-    def dress(self, look: Look) -> None:
-        """Takes other colours."""
-        self.state.look = look
-        self.theme = look.theme
-        self.board.dress(look)
-
-    def want_purpose(self) -> None:
-        """Has it worked out why the step that is picked is there, unless that is known."""
-        stop = self.stop() if self.state.view == "plan" else None
-        place = (self.session.snapshot.revision, stop.number or 0) if stop else None
-        if stop and stop.number and place not in self.state.purposes:
-            self._conversation.purpose(stop.number)
-
-    def stops(self, leaf: str) -> tuple[Stop, ...]:
-        """The stops of a branch of the present plan."""
-        snapshot = self.session.snapshot
-        if snapshot.plan is None or leaf not in snapshot.automaton.checkpoints:
-            return ()
-        return branch_stops(snapshot.automaton, snapshot.plan, leaf, self.state.wording)
-
-    def stop(self) -> Stop | None:
-        """The step of the plan that is picked."""
-        stops = self.stops(self.state.steps.leaf)
-        return stops[min(self.state.steps.at, len(stops) - 1)] if stops else None
-
-    def follow_reading(self) -> None:
-        """Goes to the row of the event that is read."""
-        reading = self.state.reading
-        self.draw()
-        if reading is not None:
-            rows = self.board.main.rows
-            at = next((n for n, r in enumerate(rows) if (r.action or 0) >= reading.number), 0)
-            self.board.main.go_to(at)
-
-    def leave(self) -> None:
-        """Quits; a run is stopped first, and the second time nothing is waited for."""
-        if not isinstance(self.state.current, Running) or self.state.leaving:
-            self.exit(0)  # A run of another terminal goes on.
-            return
-        self.state.leaving = True
-        self._deeds.order("stop")
-
-    # Parts
-
-    def _start(self, snapshot: Snapshot, plan: BranchingPlan) -> None:
-        log = new_log_path(self.session.world.name, self.logs) if self.logs else None
-        run = Running(self.session, snapshot, plan, self.tell, self._live, log)
-        if self._listens_at is not None:
-            run.tell = self._served(run)
-        self.state.current = run
-        self.state.progress = Progress(self.session.world.initial, activity="running")
-        if self.state.view != "map":
-            self.state.view = "run"
-        self.session.running = True
-        self.state.ran = snapshot
-        self.state.current.start()
-
-    def _served(self, run: Running) -> Callable[[Message], object]:
-        """Lets other terminals see and command a run; returns whom it tells what happens."""
-        from polaris_nl.automaton.program import program_json
-        from polaris_nl.planning.plan_json import plan_json
-        from polaris_tui.remote import RunServer
-
-        program = program_json(self.session.program_of(run.snapshot.automaton))
-        plan = plan_json(run.plan, run.snapshot.automaton)
-        hello = {"world": self.session.world.name, "program": program, "plan": plan}
-        try:
-            assert self._listens_at is not None
-            server = RunServer(hello, run.command, self._listens_at)
-        except OSError as error:
-            text = f"No other terminal will be able to stop this run ({error})."
-            self.state.note(Entry(text, "! "))
-            return self.tell
-
-        def both(message: Message) -> None:
-            server.tell(message)
-            self.tell(message)
-
-        return both
-
-    def attach(self) -> None:
-        """Shows the run that goes on elsewhere; it can be stopped, paused and told things from here."""
-        from polaris_tui.remote import RemoteRun
-
-        try:
-            run = RemoteRun(self._elsewhere[-1], self.tell)
-        except PolarisError as error:
-            self.state.note(Entry(str(error), "! ", "bad"))
-            return
-        self._elsewhere = self._elsewhere[:-1]
-        self.state.current, self.state.ran = run, run.snapshot
-        self.state.progress = Progress(self.session.world.initial, activity="running")
-        self.state.view = "run"
-        self.state.note(Entry(ATTACHED))
-        run.start()
-
-    @property
-    def as_tree(self) -> bool:
-        """Whether the program is drawn as a tree."""
-        return self.size.width >= TREE if self.state.tree is None else self.state.tree
-
-    def desk(self) -> Desk:
-        """What is edited."""
-        automaton = self.session.snapshot.automaton
-        picked = self.state.picked if self.state.picked in automaton.checkpoints else START
-        return Desk(
-            self.session.world,
-            self.state.wording,
-            automaton,
-            picked,
-            self.session.understanding.names.checkpoint,
-            self.session.understanding.names.renamed,
-        )
-
-    def situation(self) -> Situation:
-        """What can be done now."""
-        state, snapshot = self.state, self.session.snapshot
-        automaton, plan = snapshot.automaton, snapshot.plan
-        ways_out = offers(plan) if plan else ()
-        return Situation(
-            view=state.view,
-            checkpoint=state.picked if state.picked in automaton.checkpoints else START,
-            empty=len(automaton.checkpoints) == 1,
-            running=state.current is not None,
-            waiting=len(state.progress.waiting),
-            undoable=bool(snapshot.undoable),
-            redoable=bool(snapshot.redoable),
-            repairs=len(ways_out),
-            planned=plan is not None and bool(plan.segments or plan.problems),
-            loose=len(automaton.transitions) < len(automaton.checkpoints) - 1,
-            elsewhere=bool(self._elsewhere),
-            leftover=bool(self.leftovers),
-            listens=self._talk is not None,
-            editor=bool(editor()),
-        )
-
-    def scene(self) -> Scene:
-        """All that the panes show."""
-        state, session = self.state, self.session
-        running, path, reading = state.current, session.path, state.reading
-        snapshot = running.snapshot if running else session.snapshot
-        if state.view == "run":
-            snapshot = state.ran or snapshot
-        world, wording, progress = session.world, state.wording, state.progress
-        file = "(no name)" if state.kept else path.name if path else "(no file)"
-        if reading is not None:
-            replay = reading.replay
-            world, wording, file = replay.world, state.read_wording or wording, replay.path.name
-            snapshot = Snapshot(0, replay.automaton, replay.plan, "planned")
-            progress = replay.progress(reading.number)
-        else:
-            state.steps = stepping.kept(state.steps, snapshot.automaton, snapshot.plan)
-        stop = self.stop() if state.view == "plan" else None
-        place = (snapshot.revision, stop.number or 0) if stop else (0, 0)
-        loaded = "planner" in session.__dict__
-        return Scene(
-            world,
-            file,
-            snapshot,
-            wording,
-            progress,
-            state.glyphs,
-            self.keymap,
-            self.situation(),
-            session.planner.mutexes if loaded else Mutexes(),
-            self.as_tree and state.view == "program",
-            state.actions,
-            state.picked,
-            state.steps,
-            state.purposes.get(place, ""),
-            reading,
-            state.slow,
-            state.view == "map" and state.before_view == "plan" and reading is None,
-        )
-
-    def draw(self) -> None:
-        """Shows how things are now."""
-        if self.is_running:
-            self.board.show(
-                self.scene(), self.state.view, self.state.transcript, self.state.choosing
-            )

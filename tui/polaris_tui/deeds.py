@@ -6,29 +6,24 @@ import os
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 from typing import TYPE_CHECKING
 
-from polaris_nl.automaton.automaton import START
-from polaris_nl.execution.state import HumanCommand
 from polaris_nl.model.errors import PolarisError
-from polaris_nl.planning.result import Problem, Warning
-from polaris_nl.render.explanation import offers
 from polaris_tui import authoring, stepping
 from polaris_tui.actions import BY_ID, View
 from polaris_tui.choosing import Choosing
+from polaris_tui.deeds_program import Editing
 from polaris_tui.menus import Ask, Change, Menu, Note, Option, Perform, Step
 from polaris_tui.pane import Pane
-from polaris_tui.phrases import Order
 from polaris_tui.state import State
 from polaris_tui.styles import LOOKS
 from polaris_tui.transcript import Entry
 
 if TYPE_CHECKING:
-    from polaris_tui.app import PolarisApp
+    from polaris_tui.face import Face
 
 
-class Deeds:
+class Deeds(Editing):
     """Carries actions out.
 
     Args:
@@ -36,9 +31,8 @@ class Deeds:
         state: what it remembers.
     """
 
-    def __init__(self, app: PolarisApp, state: State) -> None:
-        self._app = app
-        self._state = state
+    def __init__(self, app: Face, state: State) -> None:
+        super().__init__(app, state)
         self._do: dict[str, Callable[[str], None]] = {
             "mend": lambda about: self._mend(),
             "why": lambda about: self._why(),
@@ -107,8 +101,6 @@ class Deeds:
             self.follow(authoring.steps(self._app.desk())[id]())
         self._app.draw()
 
-    # Menus
-
     def follow(self, step: Step) -> None:
         """Goes on with what a menu or an action led to."""
         state = self._state
@@ -176,210 +168,6 @@ class Deeds:
                 ),
             )
         )
-
-    # The program
-
-    def _mend(self) -> None:
-        plan = self._app.session.snapshot.plan
-        found = offers(plan) if plan else ()
-        self.follow(authoring.mend_menu([(self._named(t), r.text, r.edits) for t, r in found]))
-
-    def _named(self, trouble: Problem | Warning) -> str:
-        """The checkpoint that something is wrong with."""
-        automaton = self._app.session.snapshot.automaton
-        way = automaton.transitions.get(trouble.transition or "")
-        id = getattr(trouble, "checkpoint", None) or (way.target if way else "")
-        return f"for {automaton.checkpoints[id].name}" if id in automaton.checkpoints else ""
-
-    def _repair(self, number: int) -> None:
-        plan = self._app.session.snapshot.plan
-        found = offers(plan) if plan else ()
-        if 0 < number <= len(found):
-            _, repair = found[number - 1]
-            self._app.edit(Change(repair.text, repair.edits))
-
-    def _pick(self, about: str) -> None:
-        if about:
-            self._app.pick(about)
-        else:
-            self.follow(authoring.pick_menu(self._app.desk()))
-
-    def _why(self) -> None:
-        if self._state.view == "plan":
-            stop = self._app.stop()
-            if stop is not None:
-                self._app.explain(stop.checkpoint, stop.number)
-            return
-        row = self._app.board.main.row
-        if self._state.view == "program" and row and row.checkpoint and not self._app.as_tree:
-            self._app.explain(row.checkpoint, row.action)
-        else:
-            self._app.explain(self._state.picked, None)
-
-    def _travel(self, about: str, command: str) -> None:
-        if about:
-            self._app.travel(int(about) if command == "undo" else -int(about))
-        else:
-            self._app.say(command)
-
-    def _history(self) -> None:
-        snapshot = self._app.session.snapshot
-        self.follow(authoring.history_menu(snapshot.undoable, snapshot.redoable))
-
-    def _recover(self, about: str) -> None:
-        if about:
-            self._app.load(Path(about), "the program of an earlier session")
-            return
-        options = tuple(
-            Option(
-                self._app.read_back(left.program.automaton),
-                Perform("recover", str(left.path)),
-                left.path.name,
-            )
-            for left in self._app.leftovers
-        )
-        self.follow(Menu("Which one?", options))
-
-    def _shape(self) -> None:
-        self._state.tree = not self._app.as_tree
-
-    def _save_as(self, about: str) -> None:
-        if about:
-            self._app.save_as(Path(about).expanduser())
-            return
-        initial = f"{self._app.session.world.name}.polaris.json"
-        self.follow(
-            Ask("Keep the program in which file?", lambda x: Perform("save-as", x), initial)
-        )
-
-    # The plan
-
-    def _plan(self) -> None:
-        state = self._state
-        if state.view == "plan":
-            state.view = "program"
-            return
-        main = self._app.board.main
-        row = main.row if main.has_focus and state.view == "program" else None
-        number = row.action if row is not None and not self._app.as_tree else None
-        self.show("plan")
-        if row is not None:
-            self._at(state.picked, number)
-        else:
-            leaf = stepping.first_leaf(self._app.session.snapshot.automaton, state.picked)
-            state.steps = stepping.Steps(leaf, 0)
-            self._app.want_purpose()
-
-    def _at(self, checkpoint: str, number: int | None) -> None:
-        """Goes to a step of the plan."""
-        automaton = self._app.session.snapshot.automaton
-        leaf = stepping.first_leaf(automaton, checkpoint)
-        stops = self._app.stops(leaf)
-        self._state.steps = stepping.at_action(automaton, checkpoint, stops, number)
-        if number is None and checkpoint == START:
-            self._state.steps = stepping.Steps(leaf, 0)
-        self._app.want_purpose()
-
-    def _step(self, by: int) -> None:
-        steps = self._state.steps
-        self._state.steps = stepping.moved(steps, self._app.stops(steps.leaf), by)
-        self._app.want_purpose()
-
-    def _way(self, by: int) -> None:
-        steps, automaton = self._state.steps, self._app.session.snapshot.automaton
-        stops = self._app.stops(steps.leaf)
-        found = stepping.other_way(steps, stops, automaton, by)
-        if found == steps:
-            self._state.note(Entry("The ways never part in this program."))
-        self._state.steps = found
-        self._app.want_purpose()
-
-    # Runs
-
-    def _run(self) -> None:
-        self._state.asks_to_start = True
-        self._app.say("run it")
-
-    def confirm(self, read_out: str) -> None:
-        """Asks for the yes, below what will happen."""
-        self.follow(
-            Menu(
-                "Shall I start?",
-                (
-                    Option("yes, start", Perform("say", "yes")),
-                    Option("no", Perform("say", "no")),
-                ),
-                read_out,
-            )
-        )
-
-    def order(self, order: Order) -> None:
-        """Commands the run."""
-        state = self._state
-        if state.current is not None:
-            state.current.command(HumanCommand(order))
-            if order == "stop":
-                state.progress = replace(state.progress, activity="stopping")
-        elif order == "stop":
-            self.close()
-            state.stopped_at = state.transcript.tickets
-            self._app.say("stop")  # The session forgets that it asked for a yes.
-
-    def _pause(self) -> None:
-        self.order("resume" if self._state.progress.activity == "paused" else "pause")
-
-    def _tell(self, about: str) -> None:
-        waiting, wording = self._state.progress.waiting, self._state.wording
-        current = self._state.current
-        if about and current is not None and 0 < int(about) <= len(waiting):
-            when = waiting[int(about) - 1]
-            self._state.note(said=wording.events(when))
-            current.command(HumanCommand("happened", when))
-            return
-        self.follow(authoring.tell_menu(waiting, wording))
-
-    # Logs
-
-    def _log(self, about: str) -> None:
-        if about:
-            self._app.open_log(Path(about).expanduser())
-            return
-        self.follow(authoring.log_menu(self._app.logs))
-
-    def _problem(self, step: int) -> None:
-        reading = self._state.reading
-        if reading is None:
-            return
-        found = reading.replay.problem(reading.number, step)
-        if found is None:
-            where = "after" if step > 0 else "before"
-            self._app.tell_briefly(f"There is no problem {where} this event.")
-            return
-        words = reading.words if found in reading.replay.shown(reading.words) else ""
-        self._state.reading = replace(reading, number=found, words=words)
-        self._app.follow_reading()
-
-    def _filter(self) -> None:
-        reading = self._state.reading
-        if reading is None:
-            return
-
-        def filtered(words: str) -> Step:
-            wanted = "" if words.strip() == "*" else words.strip()
-            self._state.reading = replace(reading, words=wanted)
-            self._app.follow_reading()
-            return Note("All events again." if not wanted else f"Only events with: {wanted}")
-
-        title = "Only events with these words (topic=goal, severity=warning; * shows all again)"
-        self.follow(Ask(title, filtered, reading.words))
-
-    def _below(self, what: str) -> None:
-        reading = self._state.reading
-        if reading is not None:
-            below = "event" if reading.below == what else what
-            self._state.reading = replace(reading, below=below)
-
-    # The screen
 
     def show(self, view: View) -> None:
         """Shows something else in the largest pane; the same again goes back."""
