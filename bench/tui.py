@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import fcntl
+import json
 import os
 import pty
 import select
@@ -31,7 +32,15 @@ SENTENCES = (
     "open the fridge",
 )
 KEYS = "wait until"
+KEYS_ALONE = "QXZ@~^`{}|"
+"""Keys that are in nothing else that the terminal is sent."""
 DOWN = b"\x1b[B"
+RIGHT = b"\x1b[C"
+
+
+def _homes(folder: Path) -> dict[str, str]:
+    """Neither settings nor programs of the user's are touched."""
+    return {"XDG_STATE_HOME": str(folder), "XDG_CONFIG_HOME": str(folder)}
 
 
 class Terminal:
@@ -46,7 +55,7 @@ class Terminal:
         self._process = subprocess.Popen(
             [sys.executable, "-m", "polaris_nl.cli", *arguments],
             stdin=slave, stdout=slave, stderr=slave, start_new_session=True,
-            env={**os.environ, "TERM": "xterm-256color", "XDG_STATE_HOME": str(folder)},
+            env={**os.environ, "TERM": "xterm-256color", **_homes(folder)},
         )  # fmt: skip
         os.close(slave)
 
@@ -107,6 +116,53 @@ def rows() -> Iterator[Row]:
             yield Row("bytes: a key in the input line", "<= 1024", list(keys(terminal)), unit="B")
             yield Row("bytes: an updated plan", "<= 6144", list(plans(terminal)), unit="B")
             yield Row("bytes: moving in the program", "<= 512", list(moves(terminal)), unit="B")
+            yield Row("bytes: a step of the plan", "", list(steps(terminal)), unit="B")
+    with tempfile.TemporaryDirectory() as folder:
+        found = list(echoes(Path(folder)))
+        yield Row("echo of a key while 500 checkpoints are planned", "<= 50", found)
+
+
+def echoes(folder: Path, checkpoints: int = 500) -> Iterator[float]:
+    """Milliseconds from a key to its echo, 50 keys a second, while a long program is being compiled."""
+    places = ("hall", "kitchen", "office", "laundry", "cafeteria", "room-1", "room-2", "home")
+    value = {
+        "schema": "polaris-program/1",
+        "domain": "caregiving",
+        "world": "care-home",
+        "checkpoints": [
+            {"id": f"c{n}", "name": f"step {n}" if n else "start", "goals": _goals(n, places)}
+            for n in range(checkpoints + 1)
+        ],
+        "transitions": [
+            {"id": f"t{n}", "from": f"c{n - 1}", "to": f"c{n}", "when": []}
+            for n in range(1, checkpoints + 1)
+        ],
+    }
+    (folder / "program.polaris.json").write_text(json.dumps(value))
+    with Terminal(folder) as terminal:
+        terminal.read_until(b"planning")
+        for number in range(100):
+            if number and number % 50 == 0:
+                terminal.send(b"\x15")
+            key = KEYS_ALONE[number % len(KEYS_ALONE)].encode()
+            sent = time.perf_counter()
+            terminal.send(key)
+            terminal.read_until(key)
+            took = time.perf_counter() - sent
+            yield took * 1000
+            time.sleep(max(0.02 - took, 0))
+
+
+def _goals(number: int, places: tuple[str, ...]) -> list[str]:
+    """A different thing somewhere else at each step, so that little can be found again."""
+    if number == 0:
+        return []
+    place = places[number % len(places)]
+    return (
+        [f"(robot-at {place})"]
+        if number % 3
+        else ["(open fridge)" if number % 2 else "(not (open fridge))"]
+    )
 
 
 def _paint(folder: Path) -> float:
@@ -139,4 +195,13 @@ def moves(terminal: Terminal) -> Iterator[int]:
     terminal.read()
     for _ in range(8):
         terminal.send(DOWN)
+        yield len(terminal.read())
+
+
+def steps(terminal: Terminal) -> Iterator[int]:
+    """Bytes for each step of the plan, step by step, with the map below it."""
+    terminal.send(b"\x1bOS")
+    terminal.read()
+    for _ in range(8):
+        terminal.send(RIGHT)
         yield len(terminal.read())

@@ -62,6 +62,7 @@ class Session:
     ) -> None:
         self.world = world
         self.path = path
+        self.running = False  # A face says so while it carries the program out.
         self._sink = sink or (lambda event: None)
         self._now = now
         self._history = History(automaton or Automaton())
@@ -240,6 +241,9 @@ class Session:
                 return self._file_command(interpretation, command)
             case "run":
                 self._run_echoed = True
+            case "stop" | "pause" | "resume" as command if not self.running:
+                said = f"Nothing is running, so there is nothing to {command}."
+                return replace(interpretation, say=said), ""
         return interpretation, ""
 
     def _file_command(

@@ -7,8 +7,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal as OneOf
 
-import networkx as nx
-
 from polaris_nl.automaton.automaton import START, Automaton, Transition
 from polaris_nl.model.check import Types, action_faults, formula_faults
 from polaris_nl.model.domain import KIND
@@ -70,7 +68,7 @@ def _structure(automaton: Automaton) -> Iterator[Fault]:
         if ways_in[checkpoint.id] > 1:
             text = f"Several transitions lead to {checkpoint.name}; give each a checkpoint."
             yield Fault("structure", text, checkpoint.id)
-    reached = nx.descendants(automaton.graph, START) | {START}
+    reached = set(automaton.subtree(START))
     for checkpoint in automaton.checkpoints.values():
         if checkpoint.id not in reached:
             text = f"Nothing leads to {checkpoint.name}; connect it to a checkpoint, or remove it."

@@ -105,7 +105,14 @@ def _authoring(adder: _Adder) -> None:
         "polaris-nl tui lunch.polaris.json --world care-home",
     )
     tui.add_argument(
-        "program", metavar="F", type=Path, nargs="?", help="a program file; made if it isn't there"
+        "program",
+        metavar="F",
+        type=Path,
+        nargs="?",
+        help="a program file, made if it isn't there; or the log of a run (.mcap)",
+    )
+    tui.add_argument(
+        "--plain", action="store_true", help="line by line, for screen readers and slow lines"
     )
     _world(tui)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import zip_longest
 
 from polaris_nl.automaton.automaton import START, Automaton, Transition
@@ -11,7 +12,7 @@ from polaris_nl.model.formula import Literal
 from polaris_nl.model.text import listed, sentence
 from polaris_nl.model.wording import Wording
 from polaris_nl.planning.reasons import Purpose, Reasons, Step
-from polaris_nl.planning.result import BranchingPlan, Problem, Segment
+from polaris_nl.planning.result import BranchingPlan, Problem, Repair, Segment, Warning
 from polaris_nl.render.layout import Row, wrapped
 
 SPOKEN_ACTIONS = 8
@@ -139,20 +140,34 @@ def _case(automaton: Automaton, transition: Transition, wording: Wording) -> str
     return " otherwise" if automaton.is_else(transition.id) else ""
 
 
+def offers(plan: BranchingPlan) -> tuple[tuple[Problem | Warning, Repair], ...]:
+    """All ways out, with what each is a way out of, in the order in which `problem_rows` counts them."""
+    troubles: tuple[Problem | Warning, ...] = (*plan.problems, *plan.warnings)
+    return tuple((trouble, repair) for trouble in troubles for repair in trouble.repairs)
+
+
 def problem_rows(plan: BranchingPlan, automaton: Automaton, width: int) -> list[Row]:
-    """Every problem with its ways out, then every warning."""
+    """Every problem with its ways out, then every warning with its own; ways out are counted from 1."""
     rows: list[Row] = []
-    for problem in plan.problems:
-        rows.extend(_problem(problem, automaton, width))
-    for warning in plan.warnings:
-        rows.extend(wrapped(warning.text, width, "Note: "))
+    number = 0
+    troubles: tuple[Problem | Warning, ...] = (*plan.problems, *plan.warnings)
+    for trouble in troubles:
+        checkpoint = _place(trouble, automaton)
+        if isinstance(trouble, Problem):
+            here = automaton.checkpoints.get(checkpoint or "")
+            lead = f"{here.name}: " if here else ""
+            rows.extend(wrapped(f"{lead}{trouble.text}", width, "", "  ", "bad", checkpoint))
+        else:
+            rows.extend(wrapped(trouble.text, width, "Note: ", checkpoint=checkpoint))
+        for repair in trouble.repairs:
+            number += 1
+            found = wrapped(repair.text, width, "  Way out: ", checkpoint=checkpoint)
+            rows.extend(replace(row, repair=number) for row in found)
     return rows
 
 
-def _problem(problem: Problem, automaton: Automaton, width: int) -> list[Row]:
-    checkpoint = automaton.checkpoints.get(problem.checkpoint or "")
-    lead = f"{checkpoint.name}: " if checkpoint else ""
-    rows = wrapped(f"{lead}{problem.text}", width, "", "  ", "bad", problem.checkpoint)
-    for repair in problem.repairs:
-        rows.extend(wrapped(repair.text, width, "  Way out: ", checkpoint=problem.checkpoint))
-    return rows
+def _place(trouble: Problem | Warning, automaton: Automaton) -> str | None:
+    if isinstance(trouble, Problem):
+        return trouble.checkpoint
+    way = automaton.transitions.get(trouble.transition or "")
+    return way.target if way else None

@@ -22,6 +22,11 @@ class Glyphs:
         tee, elbow, bar: a branch that others follow, the last branch, a branch that goes on.
         good, bad, open, left_out: a checkpoint with a plan, with a problem, not planned yet, below a problem.
         arrow, dash, more: between names, for lines, for what is cut off.
+        step: between two steps of a timeline.
+        picked: left and right of the step that is picked.
+        tee_down, fork, corner, down: where a drawn tree parts: its first way, the others, the last, a
+            way that goes on below.
+        below: where a part of a drawing goes on further down.
     """
 
     start: str
@@ -37,10 +42,23 @@ class Glyphs:
     arrow: str
     dash: str
     more: str
+    step: str
+    picked: str
+    tee_down: str
+    fork: str
+    corner: str
+    down: str
+    below: str
 
 
-UNICODE = Glyphs("○", "●", "◇", "├─ ", "└─ ", "│  ", "✓", "✗", "…", "·", "→", "─", "…")
-ASCII = Glyphs("o", "*", "?", "|- ", "`- ", "|  ", "+", "!", "...", "-", "->", "-", "...")
+UNICODE = Glyphs(
+    "○", "●", "◇", "├─ ", "└─ ", "│  ", "✓", "✗", "…", "·", "→", "─", "…",
+    "─▸", "«»", "┬", "├─", "└─", "│ ", "↴",
+)  # fmt: skip
+ASCII = Glyphs(
+    "o", "*", "?", "|- ", "`- ", "|  ", "+", "!", "...", "-", "->", "-", "...",
+    "->", "><", "+", "|-", "`-", "| ", "v",
+)  # fmt: skip
 
 
 def glyphs_for(stream: TextIO | None = None) -> Glyphs:
@@ -49,6 +67,29 @@ def glyphs_for(stream: TextIO | None = None) -> Glyphs:
         return ASCII
     encoding = getattr(stream or sys.stdout, "encoding", None) or locale.getpreferredencoding(False)
     return UNICODE if "utf" in encoding.lower() else ASCII
+
+
+def cells(text: str) -> int:
+    """How many columns of a terminal a text takes: wide characters take two, combining ones none."""
+    if text.isascii():
+        return len(text)
+    return sum(_cells(c) for c in text)
+
+
+def _cells(character: str) -> int:
+    if unicodedata.combining(character):
+        return 0
+    return 2 if unicodedata.east_asian_width(character) in "WF" else 1
+
+
+def fitting(text: str, width: int) -> str:
+    """The longest beginning of a text that takes at most `width` columns."""
+    taken = 0
+    for at, character in enumerate(text):
+        taken += _cells(character)
+        if taken > width:
+            return text[:at]
+    return text
 
 
 def plain(text: str) -> str:

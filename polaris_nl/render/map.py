@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from polaris_nl.model.state import State
 from polaris_nl.model.world import Entity, World
-from polaris_nl.render.glyphs import ASCII, Glyphs, plain
+from polaris_nl.render.glyphs import ASCII, Glyphs, cells, plain
 from polaris_nl.render.layout import cut
 
 _ASPECT = 2.0
 """A character is about twice as high as wide."""
+_STRETCH = 2.0
+"""How much wider than to scale a map may be where it has few rows, so that names have room."""
 
 
 def map_lines(world: World, state: State, glyphs: Glyphs, width: int, height: int) -> list[str]:
@@ -25,14 +27,15 @@ def map_lines(world: World, state: State, glyphs: Glyphs, width: int, height: in
     if not regions:
         return []
     left, right, bottom, top = _bounds(regions)
-    per_column = max((right - left) / (width - 1), (top - bottom) / (height - 1) / _ASPECT)
+    per_line = max((right - left) / (width - 1) * _ASPECT, (top - bottom) / (height - 1))
+    per_column = max((right - left) / (width - 1), per_line / _ASPECT / _STRETCH)
     columns = int((right - left) / per_column) + 1
-    lines = int((top - bottom) / (per_column * _ASPECT)) + 1
+    lines = int((top - bottom) / per_line) + 1
     grid = [[" "] * columns for _ in range(lines)]
 
     def place(x: float, y: float) -> tuple[int, int]:
         column = round((x - left) / per_column)
-        line = round((top - y) / (per_column * _ASPECT))
+        line = round((top - y) / per_line)
         return min(line, lines - 1), min(column, columns - 1)
 
     for region in regions:
@@ -90,11 +93,22 @@ def _write(
 ) -> None:
     (top, left), (bottom, right) = start, end
     room = right - left - 1
+    if bottom - top < 2 and texts:  # too low for an inside: the name stands on the wall
+        for column, sign in enumerate(cut(texts[0], room, glyphs.more)):
+            grid[top][left + 1 + column] = sign
+        return
     for offset, text in enumerate(texts):
         line = top + 1 + offset
         if line >= bottom:
             break
         last = line == bottom - 1 and offset < len(texts) - 1
         shown = f"{cut(text, room - 4, glyphs.more)} +{len(texts) - offset - 1}" if last else text
-        for column, sign in enumerate(cut(plain(shown), room, glyphs.more)):
-            grid[line][left + 1 + column] = sign
+        column = left + 1
+        for sign in cut(plain(shown), room, glyphs.more):
+            if not cells(sign):
+                grid[line][column - 1] += sign  # an accent belongs to the letter before it
+                continue
+            grid[line][column] = sign
+            for covered in range(column + 1, column + cells(sign)):
+                grid[line][covered] = ""  # a wide sign stands in this column, too
+            column += cells(sign)

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import asyncio
+import os
 import threading
 import time
 from collections.abc import Awaitable, Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -13,15 +15,19 @@ from textual.pilot import Pilot
 
 from polaris_nl.automaton.automaton import Automaton
 from polaris_nl.language.understanding import Understanding
+from polaris_nl.logs.reader import read_log
+from polaris_nl.logs.writer import LogWriter
 from polaris_nl.model.world import World
 from polaris_nl.model.world_file import load_world
 from polaris_nl.planning.compile import Draft
+from polaris_nl.runs import RunOrder, run_simulated
 from polaris_nl.session import Session
 from polaris_tui.app import PolarisApp
 from polaris_tui.pane import Pane
 from polaris_tui.prompt import Prompt
+from polaris_tui.settings import Settings
 
-LIMIT_S = 20.0
+LIMIT_S = float(os.environ.get("T1_LIMIT", "20"))
 """How long a test waits for something that comes at once: only a fault makes it wait."""
 LUNCH = (
     "Tell the resident that lunch is ready. Once she acknowledges, bring a full tray to her table "
@@ -44,7 +50,7 @@ class Stage:
 
     @property
     def prompt(self) -> Prompt:
-        return self.app._board.prompt
+        return self.app.board.prompt
 
     def screen(self) -> str:
         """What a person sees."""
@@ -73,7 +79,7 @@ class Stage:
         """Waits until nothing that was said is without an answer."""
 
         def done() -> bool:
-            exchanges = self.app._transcript.exchanges.values()
+            exchanges = self.app.state.transcript.exchanges.values()
             return all(e.entries for e in exchanges) and self.planned()
 
         await self.until(done)
@@ -108,6 +114,25 @@ def understanding(care_home: World) -> Understanding:
     return Understanding(care_home)
 
 
+@pytest.fixture(scope="session")
+def log(tmp_path_factory: pytest.TempPathFactory, care_home: World) -> Path:
+    """The log of a lunch, with times that are the same whenever it is made."""
+    folder = tmp_path_factory.mktemp("log")
+    with Session(care_home) as session:
+        plan = session.say(LUNCH).snapshot.plan
+        assert plan is not None
+        order = RunOrder(
+            session.snapshot.automaton, plan, session.planner, log=folder / "made.mcap"
+        )
+        run_simulated(order, confirmed=True)
+    made = read_log(folder / "made.mcap")
+    start = made.events[0].time
+    with LogWriter(folder / "lunch.mcap", made.attachments) as writer:
+        for event in made.events:
+            writer.write(replace(event, time=1000 + round(event.time - start, 2)))
+    return folder / "lunch.mcap"
+
+
 @pytest.fixture(autouse=True)
 def _no_color(monkeypatch: pytest.MonkeyPatch) -> None:
     """Textual takes NO_COLOR out of the environment; it is put back after each test."""
@@ -136,6 +161,7 @@ def play(care_home: World, understanding: Understanding, tmp_path: Path) -> Iter
         path: Path | None = None,
         live: bool = False,
         planner: object = None,
+        settings: Settings = Settings(),
     ) -> Session:
         session = Session(world or care_home, program, path)
         opened.append(session)
@@ -143,7 +169,7 @@ def play(care_home: World, understanding: Understanding, tmp_path: Path) -> Iter
             session.__dict__["understanding"] = understanding
         if planner is not None:
             session.__dict__["planner"] = planner
-        app = PolarisApp(session, live=live, logs=tmp_path / "logs")
+        app = PolarisApp(session, settings, live=live, logs=tmp_path / "logs")
 
         async def act() -> None:
             async with app.run_test(size=size) as pilot:
@@ -164,6 +190,7 @@ class GatedPlanner:
 
     def __init__(self, planner: object) -> None:
         self._planner = planner
+        self.mutexes = planner.mutexes  # type: ignore[attr-defined]
         self.gate = threading.Event()
         self.gate.set()
 

@@ -106,9 +106,11 @@ def test_nobody_waits_for_a_plan(play: Play, care_home: World) -> None:
 
 def test_views_by_key_and_by_sentence(play: Play) -> None:
     async def script(stage: Stage) -> None:
+        await stage.press("f2")
+        await stage.see("─ Program ─")
+        await stage.press("f2")
         for key, sentence, seen in (
             ("f1", "show the help", "Type what the robot should achieve"),
-            ("f2", "show me the outline", "─ Program ─"),
             ("f3", "show the map", "Map, at the start"),
         ):
             await stage.press(key)
@@ -119,7 +121,7 @@ def test_views_by_key_and_by_sentence(play: Play) -> None:
             await stage.see(seen)
             await stage.press("escape")
             await stage.see("Program and plan")
-        await stage.press("f4")
+        await stage.press("ctrl+l")
         await stage.until(lambda: "Program and plan" not in stage.screen())
         await stage.see("Nothing is saved")
 
@@ -129,13 +131,14 @@ def test_views_by_key_and_by_sentence(play: Play) -> None:
 def test_why_is_answered_in_the_program(play: Play) -> None:
     async def script(stage: Stage) -> None:
         await stage.say("open the fridge")
-        await stage.press("tab", "home", "down", "enter")
+        await stage.press("tab", "home", "down", "w")
         await stage.see("> why action 1?", "I go to the hall, so that I can")
-        await stage.press("end", "enter")
+        await stage.press("end", "w")
         await stage.see("> what about opened?", "The aim is that")
-        await stage.press("u")
+        await stage.press("z")
+        await stage.see('"z" means nothing here.')
+        await stage.press("escape")
         assert stage.prompt.has_focus
-        assert stage.prompt.value == "u"
 
     play(script)
 

@@ -25,8 +25,9 @@ from polaris_nl.snapshot import Snapshot
 from polaris_tui.layout import FIXED, heights
 from polaris_tui.phrases import order_in, view_asked
 from polaris_tui.progress import Progress, advanced
+from polaris_tui.scene import Scene
 from polaris_tui.transcript import MOST, Entry, Exchange, Transcript
-from polaris_tui.views import Scene, outline_rows, still_planned
+from polaris_tui.views import outline_rows, still_planned
 from tests.planning.conftest import program
 
 STEPS = ("open: (open fridge)", "hall: (robot-at hall)")

@@ -18,15 +18,16 @@ async def start(stage: Stage, *sentences: str) -> None:
     for sentence in sentences:
         await stage.say(sentence)
     await stage.press("f5")
-    await stage.see("start? Say yes or no.")
+    await stage.see("Shall I start?", "1. yes, start")
     assert not runs()
-    await stage.enter("yes")
+    await stage.press("enter")
 
 
 def test_a_run_to_its_end(play: Play, tmp_path: Path) -> None:
     async def script(stage: Stage) -> None:
         await start(stage, LUNCH)
         await stage.see("Objectives: 3 of 3", "polaris-nl review", "ok, 14 actions")
+        await stage.see("The run is over: done.")
         assert "Reached fetched." in stage.pane("answers")
         await stage.press("f3")
         await stage.see("Map, after the run")
@@ -39,7 +40,9 @@ def test_a_run_to_its_end(play: Play, tmp_path: Path) -> None:
 def test_stop_always_works(play: Play, stop: str) -> None:
     async def script(stage: Stage) -> None:
         await start(stage, "open the fridge")
-        await stage.see("> running", ">   1 go to the hall", "being carried out", "F9 stop")
+        await stage.see("> running", "«go to the hall»", "Expected", "F9 stop")
+        await stage.press("f2")
+        await stage.see(">   1 go to the hall", "being carried out")
         await (stage.press(stop) if stop in ("f9", "ctrl+c") else stage.enter(stop))
         await stage.see("You stopped the run.", "ok, 3 actions")
         await stage.until(lambda: not runs())
@@ -51,8 +54,8 @@ def test_stop_overtakes_a_yes(play: Play) -> None:
     async def script(stage: Stage) -> None:
         await stage.say("open the fridge")
         await stage.say("run it")
-        stage.app.action_say("yes")
-        stage.app.action_stop()
+        stage.app.say("yes")
+        stage.app.action_do("stop")
         await stage.see("You said stop before it began")
         assert not runs()
         await stage.answered()
@@ -91,12 +94,16 @@ def test_what_is_said_in_a_run_reaches_it(play: Play) -> None:
         before = stage.session.snapshot
         await stage.see("> running")
         await stage.enter("she dismisses it")
-        await stage.until(lambda: bool(stage.app._current and stage.app._current._commands.empty()))
+        await stage.until(
+            lambda: bool(stage.app.state.current and stage.app.state.current._commands.empty())
+        )
         await stage.enter("open the fridge")
         await stage.see("The run goes on with the program that was read out")
         assert stage.session.snapshot.revision == before.revision + 1
         assert "open the fridge" not in stage.pane("main")
         await stage.press("ctrl+c")
+        await stage.see("The run is over: stopped.")
+        await stage.press("f2")
         await stage.until(lambda: "open the fridge" in stage.pane("main"))
 
     play(script, live=True)

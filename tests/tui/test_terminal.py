@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import os
-import shlex
 import shutil
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
@@ -16,6 +13,7 @@ import pytest
 
 from bench.tui import Terminal, keys, moves, plans
 from tests.tui.conftest import LIMIT_S
+from tests.tui.ssh import Tmux
 
 SENTENCES = (
     "Tell the resident that lunch is ready.",
@@ -24,45 +22,10 @@ SENTENCES = (
 )
 
 
-class Tmux:
-    """A terminal multiplexer on a socket of its own."""
-
-    def __init__(self, folder: Path) -> None:
-        self._socket = folder / "tmux"
-        self.folder = folder
-
-    def __call__(self, *arguments: str) -> str:
-        environment = {k: v for k, v in os.environ.items() if k != "TMUX"}
-        command = ["tmux", "-S", str(self._socket), "-f", os.devnull, *arguments]
-        done = subprocess.run(
-            command, env=environment, capture_output=True, text=True, timeout=LIMIT_S
-        )
-        return done.stdout
-
-    def open(self, *arguments: str) -> None:
-        command = shlex.join([sys.executable, "-m", "polaris_nl.cli", *arguments])
-        # The shell stays, so that the exit code can be read off the screen.
-        self("new-session", "-d", "-x", "80", "-y", "24", f"{command}; echo code $?; cat")
-
-    def screen(self) -> str:
-        return self("capture-pane", "-p")
-
-    def see(self, *texts: str) -> str:
-        deadline = time.monotonic() + LIMIT_S
-        while not all(text in (screen := self.screen()) for text in texts):
-            assert time.monotonic() < deadline, screen
-            time.sleep(0.05)
-        return screen
-
-    def type(self, line: str) -> None:
-        self("send-keys", "-l", line)
-        self("send-keys", "Enter")
-
-
 @pytest.fixture
 def tmux(tmp_path: Path) -> Iterator[Tmux]:
     if shutil.which("tmux") is None:
-        pytest.skip("tmux is not installed; scripts/install-system does it")
+        pytest.fail("tmux is not installed; scripts/install-system test does it")
     terminal = Tmux(tmp_path)
     yield terminal
     terminal("kill-server")
@@ -77,7 +40,9 @@ def test_lunch_over_a_terminal(tmux: Tmux) -> None:
         tmux.see("ok, ", "The plan takes")
     tmux.see("ok, 14 actions")
     tmux("send-keys", "F2")
-    tmux.see("alerted: tell the resident", "once lunch is dismissed", "cancelled: go home")
+    tmux.see(
+        "─ Program ─", "alerted: tell the resident", "once lunch is dismissed", "cancelled: go home"
+    )
     tmux("send-keys", "C-q")
     assert "Program" not in tmux.see("code 0")
     assert '"alerted"' in file.read_text()

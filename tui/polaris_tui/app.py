@@ -1,323 +1,327 @@
 """The terminal application: one screen, one input line, the same sentences as everywhere.
 
-Keys become sentences, sentences go to the session in a thread of its own, and whatever comes back is a
-message here. Each message makes a new scene, and the panes are drawn from that by pure functions.
+Keys become actions or sentences, sentences go to the session in a thread of its own, and whatever comes
+back is a message here. Each message makes a new scene, and the panes are drawn from that by pure functions.
 """
 
 from __future__ import annotations
 
-import contextlib
-from collections.abc import Callable
+import sys
+from collections.abc import Iterable
 from dataclasses import replace
-from pathlib import Path
-from typing import ClassVar
 
-from textual.app import App, ComposeResult
-from textual.binding import Binding, BindingType
 from textual.events import Resize
-from textual.message import Message
 
 from polaris_nl.answers import change_in_words
 from polaris_nl.execution.state import HumanCommand
-from polaris_nl.logs.paths import new_log_path
-from polaris_nl.model.wording import PlainWording, Wording
-from polaris_nl.render.glyphs import glyphs_for
-from polaris_nl.session import Session
-from polaris_nl.snapshot import Answer, Snapshot
-from polaris_tui import styles
+from polaris_nl.render.remembered import remembered
+from polaris_nl.snapshot import Answer
+from polaris_tui import messages as told
+from polaris_tui.actions import NO_RUN
 from polaris_tui.board import Board
-from polaris_tui.conversation import Conversation
-from polaris_tui.keys import KEYS
-from polaris_tui.messages import Answered, Changed, Happened, RunOver, Told, Warmed
+from polaris_tui.completion import names_of
+from polaris_tui.deeds import Deeds
+from polaris_tui.face import Face
 from polaris_tui.pane import Pane
-from polaris_tui.phrases import Order, order_in, view_asked
-from polaris_tui.progress import Activity, Progress, advanced
-from polaris_tui.prompt import Prompt
+from polaris_tui.phrases import Order, action_asked, order_in, view_asked
+from polaris_tui.progress import advanced
 from polaris_tui.running import Running
-from polaris_tui.transcript import Entry, Exchange, Transcript, answer_entries, event_entry
-from polaris_tui.views import Scene, View
+from polaris_tui.scene import Reading
+from polaris_tui.transcript import Entry, answer_entries, event_entry
 
 PATIENCE_S = 0.15
 """How long a new plan may take before the screen says that it is being made: most come sooner."""
+SLOW_S = 0.5
+"""How often the parts of a plan that takes long are shown."""
 END_S = 5.0
 """How long leaving waits for a run to stop, and for what the session is doing."""
 
 NO_FILE = "Nothing is saved without a program file; to keep this, start with: polaris-nl tui FILE"
-NO_RUN = 'There is no run. F5, or "run it", starts one.'
+KEPT = "This program has no name yet, and is kept all the same; :save-as gives it one."
+LEFT = "An earlier session ended without a name for its program; :recover brings it back."
 RUN_GOES_ON = "The run goes on with the program that was read out; this counts from the next run."
 STOPPED_FIRST = "You said stop before it began, so nothing runs."
 ONE_RUN = "A run is going on. Stop it with F9 before you start another."
 
 
-class PolarisApp(App[int]):
-    """The application.
+class PolarisApp(Face):
+    """The application, with what it hears from threads and widgets; see `BaseApp` for its arguments."""
 
-    Args:
-        session: program, language and planner; it belongs to the caller.
-        live: runs go in real time; otherwise as fast as the machine can.
-        logs: the folder for the logs of runs; the usual one by default.
-    """
-
-    ENABLE_COMMAND_PALETTE = False
-    CSS = styles.CSS
-    HORIZONTAL_BREAKPOINTS = styles.BREAKPOINTS
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding(k.keys, k.action, k.does, show=False, priority=k.first) for k in KEYS if k.keys
-    ]
-
-    def __init__(self, session: Session, *, live: bool = True, logs: Path | None = None) -> None:
-        super().__init__()
-        self.theme = styles.THEME
-        self.animation_level = "none"
-        self._session = session
-        self._live = live
-        self._logs = logs
-        self._glyphs = glyphs_for()
-        self._wording: Wording = PlainWording(session.world)
-        self._progress = Progress(session.world.initial, activity="loading")
-        self._transcript = Transcript()
-        self._view: View = "plan"
-        self._current: Running | None = None
-        self._awaited: tuple[int, Answer] | None = None
-        self._stopped_at = 0  # The ticket of the last thing said before a stop.
-        self._leaving = False
-        self._unsubscribe: Callable[[], None] = lambda: None
-        self._conversation = Conversation(session, self._tell)
-        self._board = Board(self._glyphs)
-
-    def compose(self) -> ComposeResult:
-        """One screen."""
-        yield self._board
+    def make_board(self) -> Board:
+        """The panes, which tell this application of keys."""
+        self.deeds = Deeds(self, self.state)
+        return Board(self, self.state.glyphs, self.state.look)
 
     def on_mount(self) -> None:
         """Shows the first screen; language and planner are loaded behind it."""
-        self._board.prompt.focus()
-        if self._session.path is None:
-            self._note(Entry(NO_FILE, tone="faint"))
-        self._draw()
-        self._unsubscribe = self._session.subscribe(lambda snapshot: self._tell(Changed()))
+        self.board.prompt.focus()
+        if self.session.path is None:
+            self.state.note(Entry(NO_FILE, tone="faint"))
+        elif self.state.kept:
+            self.state.note(Entry(KEPT, tone="faint"))
+        if self.leftovers:
+            self.state.note(Entry(LEFT))
+        self.draw()
+        self._unsubscribe = self.session.subscribe(lambda snapshot: self.tell(told.Changed()))
         self.call_after_refresh(self._conversation.start)
+        if self._first_log is not None:
+            self.open_log(self._first_log)
 
     def on_unmount(self) -> None:
         """Leaves no thread behind that still uses the session."""
         self._unsubscribe()
-        if self._current is not None:
-            self._current.command(HumanCommand("stop"))
-            self._current.wait(END_S)
+        current = self.state.current
+        gone = sys.__stdin__ is None or not sys.__stdin__.isatty()
+        if current is not None and not self.is_headless and gone:
+            self.state.hung_up = True
+        if isinstance(current, Running) and not self.state.hung_up:
+            current.command(HumanCommand("stop"))
+            current.wait(END_S)
+        elif current is not None and not isinstance(current, Running):
+            current.leave()
+            current.wait(END_S)
         self._conversation.end(END_S)
 
-    # What the threads tell
+    def on_hung_up(self) -> None:
+        """The terminal is gone: leaves it alone, and lets a run go on (see `remote`)."""
+        self.state.hung_up = self.state.current is not None
+        self.exit(0)
 
-    def _tell(self, message: Message) -> None:
-        """Sends a message from any thread; a screen that is gone already needs none."""
-        with contextlib.suppress(RuntimeError):
-            self.post_message(message)
-
-    def on_warmed(self, message: Warmed) -> None:
+    def on_warmed(self, message: told.Warmed) -> None:
         """Says things in the words of the domain from now on."""
-        self._progress = replace(self._progress, activity="")
+        self.state.progress = replace(self.state.progress, activity="")
         if message.failure:
-            self._note(Entry(message.failure, "! ", "bad"))
+            self.state.note(Entry(message.failure, "! ", "bad"))
         else:
-            self._wording = self._session.wording
-        self._draw()
+            self.state.wording = remembered(self.session.wording)
+        if self._elsewhere:
+            self.attach()
+        self.draw()
 
     def on_changed(self) -> None:
         """Shows the newest program and plan."""
-        if self._session.snapshot.planning == "planning":
-            self.set_timer(PATIENCE_S, self._draw)
+        if self.session.snapshot.planning == "planning":
+            if not self._patient:  # Parts of a plan may come many times a second.
+                self._patient = True
+                self.set_timer(SLOW_S if self.state.slow else PATIENCE_S, self._still_planning)
         else:
+            self.state.slow = False
             self._tell_news()
-            self._draw()
+            self.want_purpose()
+            self.draw()
 
-    def on_answered(self, message: Answered) -> None:
+    def _still_planning(self) -> None:
+        self._patient = False
+        self.state.slow = self.session.snapshot.planning == "planning"
+        self.draw()
+
+    def on_answered(self, message: told.Answered) -> None:
         """Shows an answer, and does what it leaves to the screen."""
-        answer = message.answer
+        answer, state = message.answer, self.state
         command = answer.interpretation.command
+        before = state.awaited_plan
+        state.awaited_plan = answer.snapshot.plan
         entries = answer_entries(answer)
-        starts = answer.confirmed and not self._current and message.ticket > self._stopped_at
-        if command in ("stop", "pause", "resume") and not self._current:
+        starts = answer.confirmed and not state.current and message.ticket > state.stopped_at
+        if command in ("stop", "pause", "resume") and not state.current:
             entries = [Entry(NO_RUN)]
         elif answer.confirmed and not starts:
-            entries = [Entry(ONE_RUN if self._current else STOPPED_FIRST, "! ")]
-        elif self._current and answer.snapshot.automaton != self._current.snapshot.automaton:
+            entries = [Entry(ONE_RUN if state.current else STOPPED_FIRST, "! ")]
+        elif state.current and answer.snapshot.automaton != state.current.snapshot.automaton:
             entries.append(Entry(RUN_GOES_ON))
-        self._transcript = self._transcript.answer(message.ticket, entries)
-        if starts:
-            self._start(answer.snapshot)
+        state.transcript = state.transcript.answer(message.ticket, entries)
+        if starts and answer.snapshot.plan is not None:
+            self._start(answer.snapshot, answer.snapshot.plan)
         elif command == "help":
-            self._view = "help"
+            state.view = "help"
         elif command == "quit":
-            self._leave()
+            self.leave()
+        elif command == "run" and state.asks_to_start:
+            state.asks_to_start = False
+            if answer.snapshot.plan is not None and answer.snapshot.plan.segments:
+                self.deeds.confirm(answer.say)
         if answer.snapshot.planning == "planning":
-            self._awaited = (message.ticket, answer)
+            state.awaited = (message.ticket, answer.snapshot.revision, before)
             self._tell_news()
-        self._draw()
+        self._pick_edited(answer)
+        self.draw()
+
+    def on_edited(self, message: told.Edited) -> None:
+        """Shows what a change by keys did."""
+        state, after = self.state, message.after
+        entries = [Entry(message.failure, "! ", "bad")] if message.failure else []
+        if state.current:
+            entries.append(Entry(RUN_GOES_ON))
+        if after.planning == "planning":
+            state.awaited = (message.ticket, after.revision, message.before)
+        news = change_in_words(
+            "", message.before, after.plan, after.planning == "planning", after.failure
+        ).strip()
+        state.transcript = state.transcript.answer(
+            message.ticket, [*entries, Entry(news or "Done.")]
+        )
+        self._tell_news()
+        if message.focus:
+            state.picked = message.focus
+        self.draw()
+        if message.focus:
+            self.board.main.pick(message.focus)
+
+    def _pick_edited(self, answer: Answer) -> None:
+        """Picks the checkpoint that a sentence has made or changed last."""
+        for edit in reversed(answer.interpretation.edits):
+            checkpoint = getattr(edit, "checkpoint", None)
+            found = getattr(checkpoint, "id", checkpoint)
+            if found in answer.snapshot.automaton.checkpoints:
+                self.state.picked = str(found)
+                return
 
     def _tell_news(self) -> None:
         """Adds what a change did to the plan, where the answer came before the plan."""
-        if self._awaited is None:
+        if self.state.awaited is None:
             return
-        ticket, answer = self._awaited
-        now = self._session.snapshot
-        if now.planning == "planning" and now.revision == answer.snapshot.revision:
+        ticket, revision, before = self.state.awaited
+        now = self.session.snapshot
+        if now.planning == "planning" and now.revision == revision:
             return
-        self._awaited = None
-        if now.revision == answer.snapshot.revision:
-            news = change_in_words("", answer.snapshot.plan, now.plan, False, now.failure).strip()
-            self._transcript = self._transcript.answer(ticket, [Entry(news)] if news else [])
+        self.state.awaited = None
+        if now.revision == revision:
+            news = change_in_words("", before, now.plan, False, now.failure).strip()
+            entries = [Entry(news)] if news else []
+            self.state.transcript = self.state.transcript.answer(ticket, entries)
 
-    def on_told(self, message: Told) -> None:
+    def on_told(self, message: told.Told) -> None:
         """Shows something else that was asked for."""
-        self._transcript = self._transcript.answer(message.ticket, message.entries)
-        self._draw()
+        self.state.transcript = self.state.transcript.answer(message.ticket, message.entries)
+        self.draw()
 
-    def on_happened(self, message: Happened) -> None:
+    def on_explained(self, message: told.Explained) -> None:
+        """Shows why a step of the plan is there."""
+        self.state.purposes[message.place] = message.text
+        self.draw()
+
+    def on_opened(self, message: told.Opened) -> None:
+        """Shows a log."""
+        shown = message.replay.shown("")
+        self.state.reading = Reading(message.replay, shown[0] if shown else 1)
+        self.state.read_wording = remembered(message.wording)
+        self.state.view = "review"
+        self.draw()
+        self.board.main.focus()
+        self.board.main.reset()
+
+    def on_happened(self, message: told.Happened) -> None:
         """Shows an event of a run."""
-        if self._current is None:
+        state, event = self.state, message.event
+        if state.current is None:
             return
-        event = message.event
-        self._progress = advanced(self._progress, event, self._current.plan)
-        entry = event_entry(event, event.time - (self._progress.started or 0.0), self._glyphs)
+        state.progress = advanced(state.progress, event, state.current.plan)
+        started = state.progress.started or 0.0
+        entry = event_entry(event, event.time - started, state.glyphs)
         if entry is not None:
-            self._note(entry)
-        self._draw()
+            state.note(entry)
+        self.draw()
 
-    def on_run_over(self, message: RunOver) -> None:
+    def on_run_over(self, message: told.RunOver) -> None:
         """Goes back to editing."""
-        self._current = None
-        self._progress = replace(self._progress, activity="", at=None)
-        self._note(*message.entries)
-        if self._leaving:
+        self.state.current = None
+        self.session.running = False
+        self.state.progress = replace(self.state.progress, activity="", at=None)
+        self.state.note(*message.entries)
+        if self.state.leaving:
             self.exit(0)
-        self._draw()
+        self.draw()
 
-    # What the user does
+    def order(self, order: Order) -> None:
+        """Commands the run."""
+        self.deeds.order(order)
 
-    def on_prompt_said(self, message: Prompt.Said) -> None:
-        """Takes a line."""
-        line = message.line
-        view, order = view_asked(line), order_in(line)
-        if order and (self._current or order == "stop"):
-            if self._current:
-                self._note(said=line)
-            self._order(order)
-        elif view is not None:
-            self._view = view
-            self._draw()
-        else:
-            self.action_say(line)
+    def action_do(self, id: str) -> None:
+        """Does an action that a key means everywhere."""
+        self.deeds.perform(id)
 
-    def on_pane_typed(self, message: Pane.Typed) -> None:
-        """Goes on typing in the input line."""
-        self._board.prompt.focus()
-        self._board.prompt.type_in(message.character)
+    def pane_key(self, pane: Pane, key: str, character: str | None) -> bool:
+        """Does what a letter means in a pane."""
+        action = self.keymap.letter(key, self.state.view)
+        if action is not None:
+            self.deeds.perform(action.id)
+            return True
+        if self.key_anywhere(key):
+            return True
+        if character is not None and character.isprintable():
+            help_key, back = self.keymap.first("help"), self.keymap.first("prompt")
+            self.tell_briefly(
+                f'"{character}" means nothing here. {help_key} lists the keys; {back} goes to the input line.'
+            )
+            return True
+        return False
 
-    def on_pane_chosen(self, message: Pane.Chosen) -> None:
-        """Says why something is in the program."""
-        checkpoint, action = message.row.checkpoint, message.row.action
-        if checkpoint is None or self._current:
+    def key_anywhere(self, key: str) -> bool:
+        """Does what a key means everywhere."""
+        action = self.keymap.anywhere(key)
+        if action is not None:
+            self.deeds.perform(action.id)
+        return action is not None
+
+    def pane_moved(self, pane: Pane) -> None:
+        """Keeps what is picked with the cursor."""
+        row, state = pane.row, self.state
+        if pane is self.board.main and row is not None:
+            if state.view == "program" and not self.as_tree and row.checkpoint:
+                state.picked = row.checkpoint
+            elif state.view == "review" and state.reading is not None and row.action:
+                state.reading = replace(state.reading, number=row.action)
+        self.call_later(self.draw)
+
+    def pane_entered(self, pane: Pane) -> None:
+        """Goes on where the program was changed last."""
+        row, state = pane.row, self.state
+        program = pane is self.board.main and state.view == "program" and not self.as_tree
+        if program and (row is None or row.checkpoint != state.picked):
+            pane.pick(state.picked)
+        self.call_later(self.draw)
+
+    def pane_left(self, pane: Pane) -> None:
+        """Shows other keys."""
+        self.call_later(self.draw)
+
+    def take_line(self, line: str) -> None:
+        """Takes a line of the input line."""
+        state = self.state
+        if state.choosing.last is not None:
+            self.deeds.chosen(line)
+            self.draw()
             return
-        asked = f"why action {action}?" if action else f"what about {self._name_of(checkpoint)}?"
-        self._conversation.explain(checkpoint, action, self._note(said=asked))
-        self._draw()
-
-    def action_say(self, sentence: str) -> None:
-        """Says a sentence, typed or meant by a key."""
-        self._conversation.say(sentence, self._note(said=sentence), self._current)
-        self._draw()
-
-    def action_run(self) -> None:
-        """Asks for a run; it is read out, and needs a yes."""
-        if self._current:
-            self._note(Entry(ONE_RUN, "! "))
-            self._draw()
+        view, order, action = view_asked(line), order_in(line), action_asked(line)
+        if order and (state.current or order == "stop"):
+            if state.current:
+                state.note(said=line)
+            self.deeds.order(order)
+        elif action is not None:
+            known = any(a.id == action for a in self.keymap.actions)
+            self.deeds.perform(action if known else "actions")
+        elif view is not None:
+            state.view = view
+        elif line.isdecimal() and state.current and 0 < int(line) <= len(state.progress.waiting):
+            self.deeds.perform("tell", line)
         else:
-            self.action_say("run it")
+            self.say(line)
+        self.draw()
 
-    def action_stop(self) -> None:
-        """Stops the run, before all that is queued."""
-        self._order("stop")
+    def filter_menu(self, text: str) -> None:
+        """Filters the menu that is open."""
+        self.state.choosing = self.state.choosing.filtered(text)
+        self.draw()
 
-    def action_pause(self) -> None:
-        """Pauses the run, or resumes it."""
-        self._order("resume" if self._progress.activity == "paused" else "pause")
+    def move_menu(self, by: int) -> None:
+        """Picks another option."""
+        self.state.choosing = self.state.choosing.moved(by)
+        self.draw()
 
-    def action_view(self, view: View) -> None:
-        """Shows something else in the largest pane; the same key goes back."""
-        self._view = "plan" if view == self._view else view
-        self._board.main.reset()
-        self._draw()
-
-    def action_home(self) -> None:
-        """Goes back to the input line, the second time to the program."""
-        if self._board.prompt.has_focus and self._view != "plan":
-            self.action_view("plan")
-        self._board.prompt.focus()
-
-    def action_scroll(self, pages: int) -> None:
-        """Scrolls the largest pane."""
-        board = self._board
-        (board.answers if self._view == "answers" else board.main).scroll_rows(pages)
-
-    async def action_quit(self) -> None:
-        """Leaves; a run is stopped first, and the second time nothing is waited for."""
-        self._leave()
+    def names(self) -> Iterable[str]:
+        """What can be completed."""
+        return names_of(self.session.world, self.session.snapshot.automaton)
 
     def on_resize(self, event: Resize) -> None:
         """Shares the rows of the screen out anew."""
-        self.call_after_refresh(self._draw)
-
-    # Parts
-
-    def _note(self, *entries: Entry, said: str = "") -> int:
-        """Adds to what was said; returns its ticket."""
-        self._transcript = self._transcript.add(Exchange(said, entries))
-        return self._transcript.tickets
-
-    def _name_of(self, checkpoint: str) -> str:
-        found = self._session.snapshot.automaton.checkpoints.get(checkpoint)
-        return found.name if found else checkpoint
-
-    def _start(self, snapshot: Snapshot) -> None:
-        if snapshot.plan is None:
-            return
-        log = new_log_path(self._session.world.name, self._logs) if self._logs else None
-        self._current = Running(self._session, snapshot, snapshot.plan, self._tell, self._live, log)
-        self._progress = Progress(self._session.world.initial, activity="running")
-        self._view = "plan" if self._view == "help" else self._view
-        self._current.start()
-
-    def _leave(self) -> None:
-        if self._current is None or self._leaving:
-            self.exit(0)
-            return
-        self._leaving = True
-        self._order("stop")
-
-    def _order(self, order: Order) -> None:
-        if self._current is not None:
-            self._current.command(HumanCommand(order))
-            activity: Activity = "stopping" if order == "stop" else self._progress.activity
-            self._progress = replace(self._progress, activity=activity)
-        elif order == "stop":
-            self._stopped_at = self._transcript.tickets
-            self.action_say("stop")  # The session forgets that it asked for a yes.
-        else:
-            self._note(Entry(NO_RUN))
-        self._draw()
-
-    def _scene(self) -> Scene:
-        running, path = self._current, self._session.path
-        return Scene(
-            self._session.world,
-            path.name if path else "(no file)",
-            running.snapshot if running else self._session.snapshot,
-            self._wording,
-            self._progress,
-            self._glyphs,
-        )
-
-    def _draw(self) -> None:
-        """Shows how things are now."""
-        self._board.show(self._scene(), self._view, self._transcript)
+        self.call_after_refresh(self.draw)

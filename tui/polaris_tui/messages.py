@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from textual.message import Message
 
 from polaris_nl.execution.events import Event
-from polaris_nl.snapshot import Answer
+from polaris_nl.model.wording import Wording
+from polaris_nl.planning.result import BranchingPlan
+from polaris_nl.snapshot import Answer, Snapshot
 from polaris_tui.transcript import Entry
+
+if TYPE_CHECKING:
+    from polaris_tui.replay import Replay
 
 
 class Warmed(Message):
@@ -15,6 +22,10 @@ class Warmed(Message):
     def __init__(self, failure: str = "") -> None:
         super().__init__()
         self.failure = failure
+
+
+class HungUp(Message):
+    """The terminal is gone."""
 
 
 class Changed(Message):
@@ -28,6 +39,38 @@ class Answered(Message):
         super().__init__()
         self.ticket = ticket
         self.answer = answer
+
+
+class Edited(Message):
+    """The program was changed by keys; the plan's news may still be on their way."""
+
+    def __init__(
+        self, ticket: int, before: BranchingPlan | None, after: Snapshot, failure: str, focus: str
+    ) -> None:
+        super().__init__()
+        self.ticket = ticket
+        self.before = before
+        self.after = after
+        self.failure = failure
+        self.focus = focus
+
+
+class Explained(Message):
+    """Why an action of a revision's plan is there."""
+
+    def __init__(self, revision: int, number: int, text: str) -> None:
+        super().__init__()
+        self.place = (revision, number)
+        self.text = text
+
+
+class Opened(Message):
+    """A log was opened."""
+
+    def __init__(self, replay: Replay, wording: Wording) -> None:
+        super().__init__()
+        self.replay = replay
+        self.wording = wording
 
 
 class Told(Message):

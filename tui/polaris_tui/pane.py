@@ -8,93 +8,116 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Protocol
 
 from rich.cells import cell_len, set_cell_size
 from rich.segment import Segment
 from rich.style import Style
 from textual import events
-from textual.binding import Binding, BindingType
 from textual.geometry import Region
-from textual.message import Message
 from textual.strip import Strip
 from textual.widget import Widget
 
 from polaris_nl.render.glyphs import Glyphs, plain
 from polaris_nl.render.layout import Row
 from polaris_tui.progress import Place
-from polaris_tui.styles import CURSOR, MARK, STYLES
+from polaris_tui.prompt import Prompt
+from polaris_tui.styles import CURSOR, MARK, Look
 
 Draw = Callable[[int, int], Sequence[Row]]
-"""Makes the rows for a width and a height in characters."""
+"""Makes the rows for a width and a height in columns and rows."""
 
 GUTTER = 1
 """Columns left of the rows, for the sign of what the robot does now."""
 
 
+class Owner(Protocol):
+    """Who is told at once of what happens in a pane, so that keys keep their order."""
+
+    def pane_key(self, pane: Pane, key: str, character: str | None) -> bool:
+        """A key was pressed; whether it meant anything."""
+        ...
+
+    def pane_moved(self, pane: Pane) -> None:
+        """The cursor is on another row."""
+        ...
+
+    def pane_entered(self, pane: Pane) -> None:
+        """The pane has got the focus."""
+        ...
+
+    def pane_left(self, pane: Pane) -> None:
+        """The pane has lost the focus."""
+        ...
+
+
 @dataclass(frozen=True, slots=True)
 class Line:
-    """What one line of the screen shows: text as wide as the pane, in one style."""
+    """What one line of the screen shows: text as wide as the pane, in one style, and a part in reverse."""
 
     text: str
     style: Style
+    span: tuple[int, int] | None = None
 
 
 class Pane(Widget, can_focus=True):
     """Rows under a heading, with a cursor while it has the focus.
 
     Args:
+        owner: is told of keys.
         glyphs: the signs to draw with.
+        look: the colours.
         follows: stays at the last row, unless the user has scrolled up.
         focusable: the user can go there, and scroll.
         id: the widget's id.
     """
 
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("up", "move(-1)", show=False),
-        Binding("down", "move(1)", show=False),
-        Binding("pageup", "page(-1)", show=False),
-        Binding("pagedown", "page(1)", show=False),
-        Binding("home", "go_to_end(False)", show=False),
-        Binding("end", "go_to_end(True)", show=False),
-        Binding("enter", "choose", show=False),
-    ]
-
-    class Typed(Message):
-        """A character was typed here that is meant for the input line."""
-
-        def __init__(self, character: str) -> None:
-            super().__init__()
-            self.character = character
-
-    class Chosen(Message):
-        """Enter was pressed on a row."""
-
-        def __init__(self, pane: Pane, row: Row) -> None:
-            super().__init__()
-            self.pane = pane
-            self.row = row
-
     def __init__(
-        self, glyphs: Glyphs, *, follows: bool = False, focusable: bool = True, id: str
+        self,
+        owner: Owner,
+        glyphs: Glyphs,
+        look: Look,
+        *,
+        follows: bool = False,
+        focusable: bool = True,
+        id: str,
     ) -> None:
         super().__init__(id=id)
         self.can_focus = focusable
+        self._owner = owner
         self._glyphs = glyphs
+        self._look = look
         self._follows = follows
         self._draw: Draw = lambda width, height: ()
         self._rows: tuple[Row, ...] = ()
         self._heading = ""
         self._top = 0
         self._cursor = 0
+        self._spanned = False  # the drawing itself shows what is picked
         self._marked: Place | None = None
         self._mark: int | None = None
         self._point: int | None = None  # the row that should be in sight
         self._lines: list[Line] = []
 
     @property
+    def row(self) -> Row | None:
+        """The row at the cursor."""
+        return self._rows[self._cursor] if self._cursor < len(self._rows) else None
+
+    @property
+    def at(self) -> int:
+        """The number of the row at the cursor, from 0."""
+        return self._cursor
+
+    def dress(self, look: Look) -> None:
+        """Takes other colours."""
+        self._look = look
+        self._lines = self._painted()
+        self.refresh()
+
+    @property
     def text_width(self) -> int:
-        """The characters that a row may have."""
+        """The columns that a row may have."""
         return max(self.size.width - GUTTER, 1)
 
     @property
@@ -125,14 +148,25 @@ class Pane(Widget, can_focus=True):
         self._keep_cursor(before)
         if self._follows:
             self._top = self._last_top if at_end else self._top
-        elif not self.has_focus and (moved or before != self._rows):
-            self._point = self._mark if moved else self._news(before)
+        elif self._spanned:
             self._reveal(self._point)
+        elif not self.has_focus and (moved or before != self._rows):
+            news = [self._mark] if moved else self._news(before)
+            self._point = news[0] if news else None
+            self._reveal(self._point)
+            if (
+                self._point is not None and news[-1] is not None
+            ):  # as much of it as there is room for
+                self._top = max(self._top, min(self._point, news[-1] - self.text_height + 1))
         self._top = max(0, min(self._top, self._last_top))
         self._repaint()
 
     def _redraw(self) -> None:
         self._rows = tuple(self._draw(self.text_width, self.text_height))
+        spans = [n for n, row in enumerate(self._rows) if row.span is not None]
+        self._spanned = bool(spans)
+        if spans:
+            self._cursor = self._point = spans[0]
         self._mark = self._marked_row()
 
     def reset(self) -> None:
@@ -161,10 +195,10 @@ class Pane(Widget, can_focus=True):
                 self._cursor = min(same, key=lambda i: abs(i - self._cursor))
         self._cursor = max(0, min(self._cursor, len(self._rows) - 1))
 
-    def _news(self, before: tuple[Row, ...]) -> int | None:
+    def _news(self, before: tuple[Row, ...]) -> list[int | None]:
         known = {(row.text, row.checkpoint) for row in before}
-        fresh = (i for i, r in enumerate(self._rows) if (r.text, r.checkpoint) not in known)
-        return next(fresh, None) if before else None
+        fresh = [i for i, r in enumerate(self._rows) if (r.text, r.checkpoint) not in known]
+        return [fresh[0], fresh[-1]] if before and fresh else []
 
     def _marked_row(self) -> int | None:
         """The first of the last rows in a row that are about it: a conditional stands higher up."""
@@ -181,20 +215,23 @@ class Pane(Widget, can_focus=True):
 
     def _painted(self) -> list[Line]:
         width, height = self.size.width, self.size.height
-        lines = [Line(self._title(width), STYLES["strong"])] if self._heading else []
+        lines = [Line(self._title(width), self._look.style("strong"))] if self._heading else []
         numbers = range(self._top, self._top + height - len(lines))
         lines += [self._line(number, width) for number in numbers]
         return lines[:height]
 
     def _line(self, number: int, width: int) -> Line:
         if number >= len(self._rows):
-            return Line(" " * width, STYLES[""])
+            return Line(" " * width, self._look.style(""))
         row = self._rows[number]
         here = number == self._mark
-        style = STYLES[row.tone] + (MARK if here else Style())
-        if self.has_focus and number == self._cursor:
+        style = self._look.style(row.tone) + (MARK if here else Style())
+        text = ("> "[not here]) + plain(row.text)
+        if row.span is not None:
+            start, end = row.span
+            return Line(set_cell_size(text, width), style, (start + GUTTER, end + GUTTER))
+        if self.has_focus and number == self._cursor and not self._spanned:
             style += CURSOR
-        text = (">" if here else " ") + plain(row.text)
         return Line(set_cell_size(text, width), style)
 
     def _title(self, width: int) -> str:
@@ -226,7 +263,14 @@ class Pane(Widget, can_focus=True):
         if y >= len(self._lines):
             return Strip.blank(self.size.width, self.rich_style)
         line = self._lines[y]
-        return Strip([Segment(line.text, self.rich_style + line.style)], self.size.width)
+        style = self.rich_style + line.style
+        if line.span is None:
+            return Strip([Segment(line.text, style)], self.size.width)
+        start, end = line.span
+        parts = (line.text[:start], line.text[start:end], line.text[end:])
+        styles = (style, style + CURSOR, style)
+        segments = [Segment(t, s) for t, s in zip(parts, styles, strict=True) if t]
+        return Strip(segments, self.size.width)
 
     def on_resize(self, event: events.Resize) -> None:
         """Draws for the new size."""
@@ -240,42 +284,52 @@ class Pane(Widget, can_focus=True):
 
     # Keys
 
-    def on_key(self, event: events.Key) -> None:
-        """Sends what is typed to the input line."""
-        if event.is_printable and event.character:
+    async def _on_key(self, event: events.Key) -> None:
+        """Asks the owner what a key means; what means nothing goes on to what works everywhere."""
+        focused = self.app.focused
+        if isinstance(focused, Prompt):  # It was typed ahead, before the focus moved.
+            await focused._on_key(event)
+        elif self._owner.pane_key(self, event.key, event.character):
             event.stop()
-            self.post_message(self.Typed(event.character))
+            event.prevent_default()
+
+    def on_click(self, event: events.Click) -> None:
+        """Goes to the row that was clicked, where the mouse is in use."""
+        row = self._top + event.y - (1 if self._heading else 0)
+        self.move(row - self._cursor)
 
     def on_focus(self) -> None:
         """Shows the cursor, inside the window."""
         if self._follows:
             self._cursor = len(self._rows) - 1
-        self._cursor = max(self._top, min(self._cursor, self._top + self.text_height - 1))
+        if not self._spanned:
+            self._cursor = max(self._top, min(self._cursor, self._top + self.text_height - 1))
         self._cursor = max(0, min(self._cursor, len(self._rows) - 1))
+        self._owner.pane_entered(self)
         self._repaint()
 
     def on_blur(self) -> None:
-        """Hides the cursor."""
+        """Hides the cursor; what it was at stays in sight."""
+        self._point = None if self._follows else self._cursor
+        self._owner.pane_left(self)
         self._repaint()
 
-    def action_move(self, by: int) -> None:
+    def move(self, by: int) -> None:
         """Moves the cursor."""
         self._cursor = max(0, min(self._cursor + by, len(self._rows) - 1))
         self._reveal(self._cursor)
+        self._owner.pane_moved(self)
         self._repaint()
 
-    def action_page(self, pages: int) -> None:
-        """Scrolls by a window."""
-        self.scroll_rows(pages)
+    def go_to(self, row: int) -> None:
+        """Moves the cursor to a row, counted from 0."""
+        self.move(row - self._cursor)
 
-    def action_go_to_end(self, last: bool) -> None:
-        """Goes to the first or the last row."""
-        self.action_move(len(self._rows) if last else -len(self._rows))
-
-    def action_choose(self) -> None:
-        """Asks about the row at the cursor."""
-        if self._cursor < len(self._rows):
-            self.post_message(self.Chosen(self, self._rows[self._cursor]))
+    def pick(self, checkpoint: str) -> None:
+        """Moves the cursor to the last row in a row of a checkpoint's own: its name."""
+        rows = [n for n, r in enumerate(self._rows) if r.checkpoint == checkpoint and not r.action]
+        if rows:
+            self.go_to(next((n for n in reversed(rows) if n - 1 not in rows), rows[0]))
 
 
 def _difference(old: Line, new: Line) -> tuple[int, int] | None:
@@ -287,4 +341,7 @@ def _difference(old: Line, new: Line) -> tuple[int, int] | None:
     if old.style != new.style or len(old.text) != len(new.text) or wide:
         return 0, width
     differ = [x for x, (a, b) in enumerate(zip(old.text, new.text, strict=True)) if a != b]
-    return differ[0], differ[-1] + 1
+    if old.span != new.span:
+        for span in (old.span, new.span):
+            differ += [span[0], min(span[1], width) - 1] if span else []
+    return min(differ), max(differ) + 1

@@ -5,17 +5,20 @@ from __future__ import annotations
 import re
 from typing import Literal as OneOf
 
-from polaris_tui.views import View
+from polaris_tui.actions import View
 
 Order = OneOf["stop", "pause", "resume"]
 
 _SHOW = re.compile(
-    r"show(?: me)?(?: the)? (plan|outline|program|map|answers|log|help|keys)[.!]?", re.IGNORECASE
+    r"show(?: me)?(?: the)? (plan|steps|outline|program|map|run|answers|log|help|keys)[.!]?",
+    re.IGNORECASE,
 )
 _VIEWS: dict[str, View] = {
     "plan": "plan",
-    "outline": "outline",
-    "program": "plan",
+    "steps": "plan",
+    "outline": "program",
+    "program": "program",
+    "run": "run",
     "map": "map",
     "answers": "answers",
     "log": "answers",
@@ -27,6 +30,13 @@ _ORDER = re.compile(
     r"(?: (?:now|it|the run|the robot|please))*[.!]*",
     re.IGNORECASE,
 )
+
+
+def action_asked(line: str) -> str | None:
+    """The action that a line names after a colon, such as `:rename`; "actions" for a colon alone."""
+    if not line.startswith(":"):
+        return None
+    return line[1:].strip().lower().replace(" ", "-") or "actions"
 
 
 def view_asked(line: str) -> View | None:

@@ -47,7 +47,7 @@ class Running:
         self.snapshot = snapshot
         self.plan = plan
         self._session = session
-        self._tell = tell
+        self.tell = tell
         self._live = live
         self._log = log
         self._commands: queue.SimpleQueue[HumanCommand] = queue.SimpleQueue()
@@ -66,8 +66,8 @@ class Running:
         """Commands the run; it listens many times a second."""
         self._commands.put(command)
 
-    def wait(self, seconds: float) -> None:
-        """Waits for its end."""
+    def wait(self, seconds: float | None) -> None:
+        """Waits for its end; for ever where no time is given."""
         self._thread.join(seconds)
 
     def _taken(self) -> Iterable[HumanCommand]:
@@ -78,12 +78,12 @@ class Running:
         try:
             report = self._carried_out()
         except PolarisError as error:
-            self._tell(RunOver(Entry(str(error), "! ", "bad")))
+            self.tell(RunOver(Entry(str(error), "! ", "bad")))
         except Exception as error:
             text = f"The run went wrong and was stopped ({type(error).__name__}: {error})."
-            self._tell(RunOver(Entry(text, "! ", "bad")))
+            self.tell(RunOver(Entry(text, "! ", "bad")))
         else:
-            self._tell(RunOver(*self._afterwards(report)))
+            self.tell(RunOver(*self._afterwards(report)))
 
     def _carried_out(self) -> RunReport:
         from polaris_nl.runs import RunOrder, run_simulated
@@ -98,7 +98,7 @@ class Running:
         return run_simulated(order, confirmed=True, show=self._show, commands=self._taken)
 
     def _show(self, event: Event) -> None:
-        self._tell(Happened(event))
+        self.tell(Happened(event))
 
     def _afterwards(self, report: RunReport) -> Iterable[Entry]:
         from polaris_nl.commands.common import shown_path

@@ -66,6 +66,13 @@ class Transcript:
         more = replace(exchange, entries=(*exchange.entries, *entries))
         return replace(self, exchanges={**self.exchanges, ticket: more})
 
+    def last_answer(self) -> str:
+        """What was answered last, as one text."""
+        for exchange in reversed(self.exchanges.values()):
+            if exchange.entries:
+                return " ".join(entry.text for entry in exchange.entries)
+        return ""
+
     def rows(self, width: int) -> list[Row]:
         """As rows."""
         return [row for e in self.exchanges.values() for row in _exchange_rows(e, width)]

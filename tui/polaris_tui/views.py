@@ -1,29 +1,20 @@
-"""What the panes show: pure functions from snapshots to rows."""
+"""What the panes show: pure functions from a scene to rows."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Literal as OneOf
-
-from rich.cells import cell_len
+from dataclasses import replace
 
 from polaris_nl.automaton.automaton import START, Automaton
-from polaris_nl.model.wording import Wording
-from polaris_nl.model.world import World
 from polaris_nl.planning.result import BranchingPlan
 from polaris_nl.render.explanation import problem_rows
-from polaris_nl.render.glyphs import Glyphs, plain
+from polaris_nl.render.glyphs import Glyphs, cells, plain
 from polaris_nl.render.layout import Row, Tone, cut, wrapped
-from polaris_nl.render.map import map_lines
 from polaris_nl.render.program import program_rows
-from polaris_nl.snapshot import Snapshot
-from polaris_tui.keys import KEYS
-from polaris_tui.progress import Activity, Progress
-
-View = OneOf["plan", "outline", "map", "answers", "help"]
-
-MAP_ROOM = (24, 6)
-"""Columns and rows that a map needs at least."""
+from polaris_nl.render.tree import tree_of
+from polaris_tui.actions import View, footer
+from polaris_tui.panels import map_rows, plan_rows, run_rows
+from polaris_tui.reviewing import review_heading, review_rows
+from polaris_tui.scene import Scene
 
 HELP = (
     "Type what the robot should achieve and press Enter, for example:",
@@ -33,42 +24,49 @@ HELP = (
     "Ask: what will you do? / what if she dismisses it? / where is the tray?",
     "Answer a question with its words, with its number, or with: the second.",
     "In a run, type stop, pause, resume, or what has happened: she acknowledges.",
-    "Where a key doesn't get through, type: show the map / plan / outline / answers / keys.",
+    "By keys: Tab goes to the program; there, letters change it. a adds a checkpoint, Enter opens what "
+    "can be done with the one that is picked, Esc goes back to the input line.",
+    "Where a key doesn't get through, type a colon and the action: :map, :plan, :rename; : alone lists all.",
 )
-
-
-@dataclass(frozen=True, slots=True)
-class Scene:
-    """All that the panes show, but the answers.
-
-    Attributes:
-        file: the program file's name, or what is to be known where there is none.
-        snapshot: program and plan; in a run, those that are carried out.
-        wording: words for goals and actions.
-        progress: how far a run is.
-    """
-
-    world: World
-    file: str
-    snapshot: Snapshot
-    wording: Wording
-    progress: Progress
-    glyphs: Glyphs
 
 
 def heading(view: View, scene: Scene) -> str:
     """What stands above a view."""
+    running = scene.running
     match view:
-        case "plan" | "outline":
-            what = "Program and plan" if view == "plan" else "Program"
-            return f"{what}, being carried out" if scene.progress.activity in RUNS else what
-        case "map" if scene.progress.started is None:
-            return "Map, at the start"
+        case "program":
+            what = "Program and plan" if scene.actions and not scene.tree else "Program"
+            return f"{what}{_making(scene)}" + (", being carried out" if running else "")
+        case "plan":
+            return f"Plan, step by step{_making(scene)}"
+        case "run":
+            return "Run" if running or scene.progress.started is None else "Run, as it ended"
         case "map":
-            return "Map, now" if scene.progress.activity in RUNS else "Map, after the run"
+            if scene.reading is not None:
+                return f"Map, after event {scene.reading.number}"
+            if scene.stepping:
+                return f"Map, after step {scene.steps.at + 1}"
+            if scene.progress.started is None:
+                return "Map, at the start"
+            return "Map, now" if running else "Map, after the run"
+        case "review":
+            return review_heading(scene)
         case "help":
-            return "Help (PgDn: more; F1: back)"
+            return f"Help ({_paging(scene)})"
     return "Answers"
+
+
+def _paging(scene: Scene) -> str:
+    keymap = scene.keymap
+    return f"{keymap.first('page-down')}: more; {keymap.first('help')}: back"
+
+
+def _making(scene: Scene) -> str:
+    """The sign that the plan of this revision is still being made."""
+    snapshot = scene.snapshot
+    if snapshot.planning == "planning" and scene.slow:
+        return f", planning{scene.glyphs.more} r{snapshot.revision}"
+    return ""
 
 
 def view_rows(view: View, scene: Scene, width: int, height: int) -> list[Row]:
@@ -76,20 +74,34 @@ def view_rows(view: View, scene: Scene, width: int, height: int) -> list[Row]:
     match view:
         case "map":
             return map_rows(scene, width, height)
+        case "plan":
+            return plan_rows(scene, width, height)
+        case "run":
+            return run_rows(scene, width, height)
+        case "review":
+            return review_rows(scene, width)
         case "help":
-            return help_rows(width)
-    return outline_rows(scene, width, actions=view == "plan")
+            return help_rows(scene, width)
+    if scene.tree:
+        snapshot = scene.snapshot
+        planned = snapshot.plan if snapshot.planning == "planned" else None
+        drawing = tree_of(snapshot.automaton, planned, scene.wording, scene.glyphs, width)
+        return drawing.shown(scene.picked)
+    return outline_rows(scene, width, scene.actions)
 
 
-def help_rows(width: int) -> list[Row]:
+def help_rows(scene: Scene, width: int) -> list[Row]:
     """What can be said, and the keys."""
-    rows = []
+    rows: list[Row] = []
     for text in HELP:
         lead = " " * (len(text) - len(text.lstrip()))
         rows += wrapped(text.strip(), width, lead)
-    rows.append(Row(""))
-    for key in KEYS:
-        rows += wrapped(key.does, width, f"{key.shown:<12}") if key.shown else []
+    group = ""
+    for here, keys, does in scene.keymap.help():
+        if here != group:
+            group = here
+            rows += [Row(""), Row(here, "strong")]
+        rows += wrapped(does, width, f"{keys:<16} ")
     return rows
 
 
@@ -111,7 +123,8 @@ def outline_rows(scene: Scene, width: int, actions: bool) -> list[Row]:
         return drawn(snapshot.plan if snapshot.planning == "planned" else None)
     older: dict[str | None, list[Row]] = {}
     for row in drawn(snapshot.plan):
-        older.setdefault(row.checkpoint, []).append(row)
+        dimmed = replace(row, tone="faint") if scene.slow and row.action else row
+        older.setdefault(row.checkpoint, []).append(dimmed)
     kept = still_planned(snapshot.automaton, snapshot.plan)
     rows: list[Row] = []
     for row in drawn(None):
@@ -133,16 +146,6 @@ def still_planned(automaton: Automaton, plan: BranchingPlan) -> set[str]:
         ):
             kept.add(target)
     return kept
-
-
-def map_rows(scene: Scene, width: int, height: int) -> list[Row]:
-    """The map, or why there is none."""
-    if width < MAP_ROOM[0] or height < MAP_ROOM[1]:
-        return wrapped("The map needs a larger screen.", width, tone="faint")
-    lines = map_lines(scene.world, scene.progress.state, scene.glyphs, width, height)
-    if not lines:
-        return wrapped(f"The world {scene.world.name} has no map.", width, tone="faint")
-    return [Row(line) for line in lines]
 
 
 def trouble_rows(scene: Scene, width: int) -> list[Row]:
@@ -169,33 +172,27 @@ def trouble_heading(scene: Scene) -> str:
 
 
 def title_row(scene: Scene, width: int) -> Row:
-    """World and program file, and what undo would take back."""
+    """World and program file, the revision, and what undo would take back."""
     left = f"Polaris NL  {plain(scene.world.name)}  {plain(scene.file)}"
+    if scene.snapshot.revision:
+        left += f"  r{scene.snapshot.revision}"
     undoable = scene.snapshot.undoable
-    right = f"F7 undoes: {plain(undoable[-1])}" if undoable else ""
+    key = scene.keymap.first("undo")
+    right = f"{key} undoes: {plain(undoable[-1])}" if undoable and not scene.reading else ""
     return Row(_apart(left, right, width, scene.glyphs), "strong")
 
 
-def status_row(scene: Scene, width: int) -> Row:
+def status_row(scene: Scene, width: int, place: str) -> Row:
     """How program and plan are, by sign and word, and the first keys to know."""
     text, tone = status(scene)
-    running = scene.progress.activity in RUNS
-    run = "F9 stop  F6 pause" if running else "F5 run"
-    keys = (
-        f"F1 help  F2 outline  F3 map  {run}  ctrl+q quit",
-        f"F1 help  {run}  ctrl+q quit",
-        f"F1 help  {run}",
-    )
-    room = width - cell_len(text) - 2
-    shown = next((k for k in keys if len(k) <= room), run)
+    shown = footer(place, scene.keymap, scene.now, width - cells(text) - 2)
     return Row(_apart(text, shown, width, scene.glyphs), tone)
-
-
-RUNS: tuple[Activity, ...] = ("running", "waiting", "paused", "deviating", "stopping")
 
 
 def status(scene: Scene) -> tuple[str, Tone]:
     """How program and plan are: sign, word and number of actions."""
+    if scene.reading is not None:
+        return _read(scene)
     glyphs, snapshot, activity = scene.glyphs, scene.snapshot, scene.progress.activity
     if activity:
         sign = glyphs.open if activity in ("loading", "stopping", "waiting") else ">"
@@ -216,6 +213,14 @@ def status(scene: Scene) -> tuple[str, Tone]:
     return f"{glyphs.bad} {plan.status}: {problems}", "bad"
 
 
+def _read(scene: Scene) -> tuple[str, Tone]:
+    """How the run of a log was at an event."""
+    assert scene.reading is not None
+    number, events = scene.reading.number, scene.reading.replay.events
+    now = scene.progress.outcome.split(":")[0] or scene.progress.activity or "before the run"
+    return f"event {number} of {len(events)}, {now}", "strong"
+
+
 def _count(number: int, what: str) -> str:
     return f"1 {what}" if number == 1 else f"{number} {what}s"
 
@@ -223,8 +228,8 @@ def _count(number: int, what: str) -> str:
 def _apart(left: str, right: str, width: int, glyphs: Glyphs) -> str:
     """Two texts at the two ends of a row; the right one gives way."""
     left = cut(left, width, glyphs.more)
-    room = width - cell_len(left) - 2
+    room = width - cells(left) - 2
     if room < 12:
         return left
     right = cut(right, room, glyphs.more)
-    return left + " " * (width - cell_len(left) - cell_len(right)) + right
+    return left + " " * (width - cells(left) - cells(right)) + right

@@ -1,0 +1,92 @@
+"""What actions do with the program."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from polaris_nl.planning.result import Problem, Warning
+from polaris_nl.render.explanation import offers
+from polaris_tui import authoring
+from polaris_tui.deeds_run import Going
+from polaris_tui.menus import Ask, Change, Menu, Option, Perform
+
+if TYPE_CHECKING:
+    pass
+
+
+class Editing(Going):
+    """Mends, explains, undoes and saves."""
+
+    def _mend(self) -> None:
+        plan = self._app.session.snapshot.plan
+        found = offers(plan) if plan else ()
+        self.follow(authoring.mend_menu([(self._named(t), r.text, r.edits) for t, r in found]))
+
+    def _named(self, trouble: Problem | Warning) -> str:
+        """The checkpoint that something is wrong with."""
+        automaton = self._app.session.snapshot.automaton
+        way = automaton.transitions.get(trouble.transition or "")
+        id = getattr(trouble, "checkpoint", None) or (way.target if way else "")
+        return f"for {automaton.checkpoints[id].name}" if id in automaton.checkpoints else ""
+
+    def _repair(self, number: int) -> None:
+        plan = self._app.session.snapshot.plan
+        found = offers(plan) if plan else ()
+        if 0 < number <= len(found):
+            _, repair = found[number - 1]
+            self._app.edit(Change(repair.text, repair.edits))
+
+    def _why(self) -> None:
+        if self._state.view == "plan":
+            stop = self._app.stop()
+            if stop is not None:
+                self._app.explain(stop.checkpoint, stop.number)
+            return
+        row = self._app.board.main.row
+        if self._state.view == "program" and row and row.checkpoint and not self._app.as_tree:
+            self._app.explain(row.checkpoint, row.action)
+        else:
+            self._app.explain(self._state.picked, None)
+
+    def _pick(self, about: str) -> None:
+        if about:
+            self._app.pick(about)
+        else:
+            self.follow(authoring.pick_menu(self._app.desk()))
+
+    def _travel(self, about: str, command: str) -> None:
+        if about:
+            self._app.travel(int(about) if command == "undo" else -int(about))
+        else:
+            self._app.say(command)
+
+    def _history(self) -> None:
+        snapshot = self._app.session.snapshot
+        self.follow(authoring.history_menu(snapshot.undoable, snapshot.redoable))
+
+    def _recover(self, about: str) -> None:
+        if about:
+            self._app.load(Path(about), "the program of an earlier session")
+            return
+        options = tuple(
+            Option(
+                self._app.read_back(left.program.automaton),
+                Perform("recover", str(left.path)),
+                left.path.name,
+            )
+            for left in self._app.leftovers
+        )
+        self.follow(Menu("Which one?", options))
+
+    def _shape(self) -> None:
+        self._state.tree = not self._app.as_tree
+
+    def _save_as(self, about: str) -> None:
+        if about:
+            self._app.save_as(Path(about).expanduser())
+            return
+        initial = f"{self._app.session.world.name}.polaris.json"
+        self.follow(
+            Ask("Keep the program in which file?", lambda x: Perform("save-as", x), initial)
+        )

@@ -1,0 +1,234 @@
+"""What the actions need of the application: sentences, edits, menus, runs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from textual.message import Message
+
+from polaris_nl.automaton.automaton import Automaton
+from polaris_nl.automaton.program import write_program
+from polaris_nl.logs.paths import new_log_path
+from polaris_nl.model.errors import PolarisError
+from polaris_nl.planning.result import BranchingPlan
+from polaris_nl.snapshot import Snapshot
+from polaris_tui.base import BaseApp
+from polaris_tui.deeds import editor
+from polaris_tui.menus import Ask, Change, Menu
+from polaris_tui.pane import Pane
+from polaris_tui.phrases import Order
+from polaris_tui.progress import Progress
+from polaris_tui.running import Running
+from polaris_tui.styles import Look
+from polaris_tui.transcript import Entry
+
+ATTACHED = (
+    "This run was begun in another terminal. It can be stopped from here; quitting lets it go on."
+)
+
+
+class Face(BaseApp):
+    """An application that can be told what to do."""
+
+    def say(self, sentence: str) -> None:
+        """Says a sentence, typed or meant by a key."""
+        ticket = self.state.note(said=sentence)
+        self._conversation.say(sentence, ticket, self.state.current)
+
+    @property
+    def busy(self) -> bool:
+        """Whether something that was asked for is still to be done."""
+        return self._conversation.busy
+
+    def edit(self, change: Change) -> None:
+        """Changes the program."""
+        self._conversation.edit(change, self.state.note(said=change.label))
+
+    def travel(self, steps: int) -> None:
+        """Goes back or forward in the program's history."""
+        word = "undo" if steps > 0 else "redo"
+        self._conversation.travel(steps, self.state.note(said=f"{word} {abs(steps)}"))
+
+    def explain(self, checkpoint: str, action: int | None) -> None:
+        """Says why something is in the program."""
+        found = self.session.snapshot.automaton.checkpoints.get(checkpoint)
+        name = found.name if found else checkpoint
+        asked = f"why action {action}?" if action else f"what about {name}?"
+        self._conversation.explain(checkpoint, action, self.state.note(said=asked))
+
+    def load(self, path: Path, label: str) -> None:
+        """Takes another program from a file."""
+        self._conversation.load(path, label, self.state.note(said=label))
+
+    def save_as(self, path: Path) -> None:
+        """Gives the program's file another name."""
+        self.state.kept = False
+        self._conversation.save_as(path, self.state.note(said=f"save as {path.name}"))
+
+    def open_log(self, path: Path) -> None:
+        """Opens a log."""
+        self._conversation.open_log(path, self.state.note(said=f"log {path.name}"))
+
+    def talk(self) -> None:
+        """Starts listening."""
+        if self._talk is not None:
+            self._talk()
+
+    def edit_file(self) -> None:
+        """Opens the program in the user's editor, and takes what it leaves."""
+        import shlex
+        import subprocess
+        import tempfile
+
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "program.polaris.json"
+            try:
+                write_program(self.session.program, path)
+                with self.suspend():
+                    subprocess.run([*shlex.split(editor()), str(path)], check=False)
+                kept = path.rename(Path(folder) / "edited.polaris.json")
+                from polaris_nl.automaton.edits import ReplaceProgram
+                from polaris_nl.automaton.program import read_program
+
+                program = read_program(kept).automaton
+            except (PolarisError, OSError) as error:
+                self.state.note(Entry(f"The program stays as it was. {error}", "! ", "bad"))
+                return
+        if program == self.session.snapshot.automaton:
+            self.state.note(Entry("Nothing was changed."))
+        else:
+            self.edit(Change("edit the file", (ReplaceProgram(program),)))
+
+    def scroll_pane(self, pages: int) -> None:
+        """Scrolls the pane that has the focus, else the largest one."""
+        focused = self.focused
+        if isinstance(focused, Pane):
+            focused.scroll_rows(pages)
+        else:
+            board = self.board
+            (board.answers if self.state.view == "answers" else board.main).scroll_rows(pages)
+
+    def ask(self, question: Menu | Ask) -> None:
+        """Lets the input line serve a menu or take a text."""
+        if not self.board.prompt.has_focus:
+            self._focused_before = self.focused
+        if isinstance(question, Ask):
+            self.board.prompt.serve("ask", question.initial)
+        else:
+            self.board.prompt.serve("menu")
+        self.board.prompt.focus()
+
+    def asked_enough(self) -> None:
+        """Gives the input line back to sentences, and the focus to where it was."""
+        self.board.prompt.serve("sentence")
+        if self._focused_before is not None:
+            self._focused_before.focus()
+        self._focused_before = None
+
+    def pick(self, checkpoint: str) -> None:
+        """Goes to a checkpoint of the program."""
+        self.state.view = "program"
+        self.state.picked = checkpoint
+        self.draw()
+        self.board.main.focus()
+        self.board.main.pick(checkpoint)
+
+    def tell_briefly(self, text: str) -> None:
+        """Says something that isn't worth keeping twice."""
+        self.state.note(Entry(text))
+        self.draw()
+
+    def read_back(self, automaton: Automaton) -> str:
+        """A program in a sentence."""
+        return self.session.understanding.read_back(automaton)
+
+    def dress(self, look: Look) -> None:
+        """Takes other colours."""
+        self.state.look = look
+        self.theme = look.theme
+        self.board.dress(look)
+
+    def want_purpose(self) -> None:
+        """Has it worked out why the step that is picked is there, unless that is known."""
+        stop = self.stop() if self.state.view == "plan" else None
+        place = (self.session.snapshot.revision, stop.number or 0) if stop else None
+        if stop and stop.number and place not in self.state.purposes:
+            self._conversation.purpose(stop.number)
+
+    def follow_reading(self) -> None:
+        """Goes to the row of the event that is read."""
+        reading = self.state.reading
+        self.draw()
+        if reading is not None:
+            rows = self.board.main.rows
+            at = next((n for n, r in enumerate(rows) if (r.action or 0) >= reading.number), 0)
+            self.board.main.go_to(at)
+
+    def leave(self) -> None:
+        """Quits; a run is stopped first, and the second time nothing is waited for."""
+        if not isinstance(self.state.current, Running) or self.state.leaving:
+            self.exit(0)  # A run of another terminal goes on.
+            return
+        self.state.leaving = True
+        self.order("stop")
+
+    def order(self, order: Order) -> None:
+        """Commands the run."""
+        raise NotImplementedError
+
+    def take_line(self, line: str) -> None:
+        """Takes a line of the input line."""
+        raise NotImplementedError
+
+    def _start(self, snapshot: Snapshot, plan: BranchingPlan) -> None:
+        log = new_log_path(self.session.world.name, self.logs) if self.logs else None
+        run = Running(self.session, snapshot, plan, self.tell, self._live, log)
+        if self._listens_at is not None:
+            run.tell = self._served(run)
+        self.state.current = run
+        self.state.progress = Progress(self.session.world.initial, activity="running")
+        if self.state.view != "map":
+            self.state.view = "run"
+        self.session.running = True
+        self.state.ran = snapshot
+        self.state.current.start()
+
+    def _served(self, run: Running) -> Callable[[Message], object]:
+        """Lets other terminals see and command a run; returns whom it tells what happens."""
+        from polaris_nl.automaton.program import program_json
+        from polaris_nl.planning.plan_json import plan_json
+        from polaris_tui.remote import RunServer
+
+        program = program_json(self.session.program_of(run.snapshot.automaton))
+        plan = plan_json(run.plan, run.snapshot.automaton)
+        hello = {"world": self.session.world.name, "program": program, "plan": plan}
+        try:
+            assert self._listens_at is not None
+            server = RunServer(hello, run.command, self._listens_at)
+        except OSError as error:
+            text = f"No other terminal will be able to stop this run ({error})."
+            self.state.note(Entry(text, "! "))
+            return self.tell
+
+        def both(message: Message) -> None:
+            server.tell(message)
+            self.tell(message)
+
+        return both
+
+    def attach(self) -> None:
+        """Shows the run that goes on elsewhere; it can be stopped, paused and told things from here."""
+        from polaris_tui.remote import RemoteRun
+
+        try:
+            run = RemoteRun(self._elsewhere[-1], self.tell)
+        except PolarisError as error:
+            self.state.note(Entry(str(error), "! ", "bad"))
+            return
+        self._elsewhere = self._elsewhere[:-1]
+        self.state.current, self.state.ran = run, run.snapshot
+        self.state.progress = Progress(self.session.world.initial, activity="running")
+        self.state.view = "run"
+        self.state.note(Entry(ATTACHED))
+        run.start()

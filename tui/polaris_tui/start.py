@@ -1,0 +1,134 @@
+"""Starts the application: settings, the file that keeps a program without a name, screen or lines."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from polaris_nl.model.errors import PolarisError
+from polaris_nl.session import Session
+from polaris_tui.keeping import keeping_path, leftovers, tidied
+from polaris_tui.messages import HungUp
+from polaris_tui.remote import live_runs, runs_folder
+from polaris_tui.running import Running
+from polaris_tui.settings import Settings, read_settings, settings_path
+
+if TYPE_CHECKING:
+    from polaris_tui.app import PolarisApp
+
+SWITCH_S = 0.001
+"""How long planning may keep the interpreter from a key that was pressed; Python's own is five times that."""
+
+
+def start(session: Session, *, log: Path | None = None, plain: bool = False) -> int:
+    """Runs the application until the user quits; returns the exit code.
+
+    Args:
+        session: program, language and planner; it belongs to the caller.
+        log: a log to be opened at once.
+        plain: line by line instead of on the whole screen.
+
+    Raises:
+        FormatError: the settings aren't as they should be.
+    """
+    sys.setswitchinterval(SWITCH_S)
+    settings = read_settings()
+    kept = session.path is None
+    if kept:
+        session.path = keeping_path(session.world.name)
+    kept_at = session.path
+    left = leftovers(session.world.name)
+    try:
+        if plain:
+            return _lines(session, settings, log)
+        from polaris_tui.app import PolarisApp
+
+        app = PolarisApp(
+            session,
+            settings,
+            logs=settings.logs_folder,
+            kept=kept and kept_at is not None,
+            leftovers=left,
+            log=log,
+            listens_at=runs_folder(),
+            elsewhere=_of_world(session.world.name),
+            settings_file=str(settings_path()),
+        )
+        code = _on_the_screen(app, settings.mouse)
+    finally:
+        if kept and kept_at is not None and tidied(kept_at) and session.path == kept_at:
+            sys.stdout.write(f"The program is kept. Go on with: polaris-nl tui {kept_at}\n")
+    return int(code or 0)
+
+
+def _of_world(world: str) -> list[Path]:
+    """Where runs of a world listen."""
+    from polaris_tui.remote import RemoteRun
+
+    found = []
+    for path in live_runs():
+        with contextlib.suppress(PolarisError):
+            run = RemoteRun(path, lambda message: None)
+            run.leave()
+            if run.world == world:
+                found.append(path)
+    return found
+
+
+def _on_the_screen(app: PolarisApp, mouse: bool) -> int | None:
+    """Runs the application; where the terminal goes away, a run goes on until its end."""
+
+    def hung_up(*_: object) -> None:
+        _let_go()
+        app.tell(HungUp())
+
+    signal.signal(signal.SIGHUP, hung_up)
+    code: int | None = 1
+    try:
+        code = app.run(mouse=mouse)
+    except OSError:
+        if sys.__stdin__ is not None and sys.__stdin__.isatty():
+            raise
+    if app.state.hung_up:
+        _let_go()
+        if isinstance(app.state.current, Running):
+            app.state.current.wait(None)
+    return code
+
+
+def _let_go() -> None:
+    """Takes nothing from the terminal that is gone, and gives it nothing: both would fail."""
+    nothing = os.open(os.devnull, os.O_RDWR)
+    for stream in (0, 1, 2):
+        os.dup2(nothing, stream)
+    os.close(nothing)
+
+
+def _lines(session: Session, settings: Settings, log: Path | None) -> int:
+    """The line mode."""
+    from polaris_nl.commands.common import width
+    from polaris_nl.model.wording import PlainWording
+    from polaris_tui.plain import Plain, typed_lines
+    from polaris_tui.progress import Progress
+    from polaris_tui.scene import Scene
+
+    scene = Scene(
+        session.world,
+        session.path.name if session.path else "(no file)",
+        session.snapshot,
+        PlainWording(session.world),
+        Progress(session.world.initial),
+        settings.glyphs_for_terminal(),
+        settings.keymap,
+    )
+    talk = Plain(
+        session, lambda line: print(line, flush=True), scene, width(), logs=settings.logs_folder
+    )
+    if log is not None:
+        talk.open_log(log)
+    talk.work(typed_lines())
+    return 0
