@@ -50,12 +50,13 @@ class VoskModel:
 
     Args:
         folder: the model's folder.
+        widely: search more widely than the model's own settings do.
 
     Raises:
         SpeechError: Vosk isn't installed, or can't use the model.
     """
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, widely: bool = True) -> None:
         try:
             import vosk
         except (ImportError, OSError) as error:
@@ -65,7 +66,7 @@ class VoskModel:
         vosk.SetLogLevel(_ERRORS_ONLY)
         self._vosk = vosk
         try:
-            self.handle = vosk.Model(str(tuned(folder)))
+            self.handle = vosk.Model(str(tuned(folder) if widely else folder))
         except Exception as error:  # Vosk raises nothing more specific
             raise SpeechError(f"The speech model in {folder} can't be loaded. {MEND}") from error
 
