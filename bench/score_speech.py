@@ -4,7 +4,7 @@
 |---|---|
 | words | sentences heard word for word (the recogniser alone) |
 | program | sentences that led to the right program, question, answer or command |
-| as typed | the same, of those sentences that are understood rightly when typed (the recogniser alone, to meaning) |
+| as typed | the same, of the sentences that are understood rightly when typed |
 | wrong | sentences that led to a program or command that was not meant, and weren't questioned or refused |
 | foreign | sentences meant for somebody else that were taken for the robot's |
 
@@ -17,20 +17,24 @@ import argparse
 import multiprocessing
 import sys
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 
 from bench.speech_audio import CONDITIONS, VOICES, Sentence, audio, foreign, sentences
-from bench.speech_decoding import Decodings
+from bench.speech_decoding import Decodings, cut
 from bench.speech_meaning import Context
 from polaris_nl.language.understanding import Understanding
 from polaris_nl.model.world_file import load_world
-from polaris_nl.speech.hearing import Utterance, utterance
-from polaris_nl.speech.models import SEARCH, model_folder
-from polaris_nl.speech.recogniser import VoskModel, VoskRecogniser
+from polaris_nl.speech.activity import SileroActivity
+from polaris_nl.speech.hearing import Utterance, Ways, utterance
+from polaris_nl.speech.models import NARROW, WIDE, model_folder
+from polaris_nl.speech.recogniser import UNKNOWN, Spoken
+from polaris_nl.speech.repair import Repairer
+from polaris_nl.speech.vosk_recogniser import ALTERNATIVES, VoskModel, VoskRecogniser
 
 WORLDS = ("care-home", "dinner-party")
+SEARCHES = {"wide": WIDE, "narrow": NARROW}
 SYSTEMS = ("free Vosk", "Vosk, phrases", "Polaris NL")
 
 
@@ -57,6 +61,7 @@ class Score:
     exact: bool
     wrong: bool
     free: str = ""
+    note: str = ""
 
 
 @cache
@@ -65,25 +70,29 @@ def _understanding(world: str) -> Understanding:
 
 
 @cache
-def _model(widely: bool) -> VoskModel:
-    return VoskModel(model_folder(), widely)
+def _model(search: str) -> VoskModel:
+    return VoskModel(model_folder(), SEARCHES[search])
 
 
 @cache
-def _phrased(world: str, widely: bool) -> Decodings:
-    phrases = _understanding(world).phrases()
+def _decodings(world: str, search: str) -> Decodings:
+    """What is heard with the phrases of a world, or freely where it is ""."""
+    phrases = _understanding(world).phrases() if world else None
     return Decodings(
-        ("phrases", phrases, sorted(SEARCH.items()) if widely else "default", 30),
-        lambda: VoskRecogniser(_model(widely), phrases),
+        (phrases, sorted(SEARCHES[search].items()), ALTERNATIVES),
+        lambda: VoskRecogniser(_model(search), phrases).decoder(),
     )
 
 
 @cache
-def _free(widely: bool) -> Decodings:
-    return Decodings(
-        ("free", sorted(SEARCH.items()) if widely else "default"),
-        lambda: VoskRecogniser(_model(widely)),
-    )
+def _ways(world: str) -> Ways:
+    words = {word for phrase in _understanding(world).phrases() for word in phrase.split()}
+    return Ways(repairer=Repairer(words))
+
+
+@cache
+def _activity() -> SileroActivity:
+    return SileroActivity()
 
 
 @cache
@@ -91,44 +100,45 @@ def _context(world: str, after: tuple[str, ...]) -> Context:
     return Context(_understanding(world), after)
 
 
-def _plain(decodings: Decodings, sound: bytes, context: Context) -> Utterance:
-    text = ". ".join(piece.alternatives[0] for piece in decodings.hear(sound))
-    return Utterance(text, bool(text) and "[unk]" not in text and context.parses(text))
+def _pieces(world: str, search: str, sounds: Sequence[bytes], second: bool) -> list[Spoken]:
+    found = []
+    for sound in sounds:
+        texts = _decodings(world, search).hear(sound)
+        free = _decodings("", "narrow").hear(sound) if second else ()
+        if texts:
+            found.append(Spoken(texts, sound, free[0] if free else ""))
+    return found
 
 
-def _ours(task: Task, sound: bytes, context: Context) -> Utterance:
-    pieces = _phrased(task.world, True).hear(sound)
-    return utterance(pieces, context.parses, _free(False).words)
+def _plain(task: Task, world: str, sounds: Sequence[bytes], context: Context) -> Utterance:
+    texts = [p.alternatives[0] for p in _pieces(world, "narrow", sounds, second=False)]
+    text = ". ".join(texts)
+    return Utterance(text, bool(text) and UNKNOWN not in text and context.weigh(text) is not None)
 
 
-def _free_said(task: Task, sound: bytes, context: Context) -> Utterance:
-    return _plain(_free(False), sound, context)
-
-
-def _phrases_said(task: Task, sound: bytes, context: Context) -> Utterance:
-    return _plain(_phrased(task.world, False), sound, context)
-
-
-_HEARS: dict[str, Callable[[Task, bytes, Context], Utterance]] = {
-    "free Vosk": _free_said, "Vosk, phrases": _phrases_said, "Polaris NL": _ours,
-}  # fmt: skip
+def _hear(system: str, task: Task, sounds: Sequence[bytes], context: Context) -> Utterance:
+    if system == SYSTEMS[0]:
+        return _plain(task, "", sounds, context)
+    if system == SYSTEMS[1]:
+        return _plain(task, task.world, sounds, context)
+    pieces = _pieces(task.world, "wide", sounds, second=True)
+    return utterance(pieces, context.weigh, _ways(task.world))
 
 
 def score(order: tuple[Task, tuple[str, ...]]) -> list[Score]:
     """What each system makes of a sentence."""
     task, systems = order
     sentence = task.sentence
-    sound = audio(sentence.text, task.voice, task.condition)
+    sounds = cut(audio(sentence.text, task.voice, task.condition), _activity())
     context = _context(task.world, sentence.after)
     typed_right = context.meaning(sentence.text) == sentence.expect
     found = []
     for system in systems:
-        said = _HEARS[system](task, sound, context)
+        said = _hear(system, task, sounds, context)
         meaning = context.meaning(said.text) if said.accepted else "refused"
         right = meaning == sentence.expect
         acts = meaning.startswith(("start", "command"))
         exact = said.text.replace(". ", " ").replace("mister", "mr") == sentence.text
-        free = _free(False).words(sound) if system == SYSTEMS[-1] else ""
         found.append(
             Score(
                 task,
@@ -139,7 +149,10 @@ def score(order: tuple[Task, tuple[str, ...]]) -> list[Score]:
                 typed_right,
                 exact,
                 acts and not right,
-                free,
+                said.free,
+                f" ({said.why_not})"
+                if said.why_not
+                else f" <- {said.repaired}" * bool(said.repaired),
             )
         )
     return found
@@ -201,7 +214,7 @@ def misses(scores: Sequence[Score]) -> None:
         typed = "" if s.typed_right or not s.task.sentence.world else " (typed, too)"
         sys.stdout.write(
             f"{mark} {s.task.voice:<5} {s.task.condition:<13} {s.task.sentence.text}{typed}\n"
-            f"      heard {s.heard!r} free {s.free!r}: {s.meaning}\n"
+            f"      heard {s.heard!r} free {s.free!r}: {s.meaning}{s.note}\n"
         )
 
 

@@ -1,4 +1,4 @@
-"""What an utterance amounts to, as one line of text: so that what was meant and what was made of it can be compared."""
+"""What an utterance amounts to, as one line of text: what was meant and what was understood can be compared."""
 
 from __future__ import annotations
 
@@ -6,9 +6,11 @@ from collections.abc import Iterable, Sequence
 
 from polaris_nl.automaton.automaton import START, Automaton
 from polaris_nl.automaton.edits import apply_all
+from polaris_nl.hands_free.weight import weight_of
 from polaris_nl.language.dialogue import Dialogue
 from polaris_nl.language.interpretation import Query
 from polaris_nl.language.understanding import Understanding
+from polaris_nl.speech.weight import Weight
 
 
 class Context:
@@ -30,9 +32,10 @@ class Context:
             if meant.edits:
                 self._programs.append(apply_all(self._programs[-1], meant.edits))
 
-    def parses(self, utterance: str) -> bool:
-        """Whether an utterance would be understood here."""
-        return self._understanding.parses(utterance, self._programs[-1], self._dialogue)
+    def weigh(self, utterance: str) -> Weight | None:
+        """What an utterance would weigh here; None if it wouldn't be understood."""
+        meant, _ = self._understanding.interpret(utterance, self._programs[-1], self._dialogue)
+        return weight_of(meant, awaits_yes=True)
 
     def meaning(self, utterance: str) -> str:
         """The program that an utterance leads to, or the question, command or answer."""

@@ -149,11 +149,14 @@ class Session:
         self._report_understood(answer)
         return answer
 
-    def parses(self, utterance: str) -> bool:
-        """Whether an utterance would be understood now: anything but a refusal. Changes nothing."""
-        return self.understanding.parses(
-            utterance, self._publisher.snapshot.automaton, self._dialogue
-        )
+    def understood(self, utterance: str) -> Interpretation:
+        """What an utterance would be taken to mean now. Changes nothing."""
+        return self._interpret(utterance)[0]
+
+    @property
+    def awaits_yes(self) -> bool:
+        """Whether a yes would start a run: what will happen was read out last."""
+        return self._run_echoed
 
     def begin_again(self, automaton: Automaton) -> None:
         """Goes back to a program, as if nothing had been said: for utterances that are independent."""

@@ -1,6 +1,7 @@
 """Speaks the speech set with five synthetic voices, into the user's cache; what is there already is kept.
 
-Run by `make score-speech`, in an environment of its own with the packages below: none is a dependency of the project.
+Run by `make score-speech`, in an environment of its own with the packages below, none of which is a
+dependency of the project.
 
 | voice | from | licence |
 |---|---|---|

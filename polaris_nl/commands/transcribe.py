@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from argparse import Namespace
+from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from polaris_nl.commands.common import complain, print_json, print_text, session_of
+from polaris_nl.hands_free.weight import weigher
 from polaris_nl.language.interpretation import Refusal
 from polaris_nl.model.errors import SpeechError
 from polaris_nl.session import Session
 from polaris_nl.snapshot import Answer, answer_json
 from polaris_nl.speech.audio import file_blocks
-from polaris_nl.speech.hearing import Utterance, utterance
-from polaris_nl.speech.models import model_folder
-from polaris_nl.speech.recogniser import VoskModel, VoskRecogniser
+from polaris_nl.speech.ears import EarMaker, Ears
+from polaris_nl.speech.hearing import Utterance
 
 NOT_MEANT = (
     "That didn't sound like something for the robot, so I left it alone. Say it again if it was."
@@ -25,15 +26,15 @@ NOT_MEANT = (
 def run(arguments: Namespace) -> int:
     """Transcribes each file, for itself or as one dialogue; 1 where one isn't understood or can't be read."""
     code = 0
-    model = VoskModel(model_folder())
+    maker = EarMaker()
     with session_of(arguments) as session:
-        ear = Ear(session, model, arguments.free)
+        ears = maker.free_ears() if arguments.free else ears_for(session, maker)
         start = session.snapshot.automaton
         for number, path in enumerate(arguments.files):
             if number and not arguments.dialogue:
                 session.begin_again(start)
             try:
-                said, answer = ear.file(path)
+                said, answer = hear_file(path, ears, session)
             except SpeechError as error:
                 complain(str(error))
                 if arguments.json:
@@ -52,39 +53,29 @@ def run(arguments: Namespace) -> int:
     return code
 
 
-class Ear:
-    """Hears recordings in one session.
+def ears_for(session: Session, maker: EarMaker) -> Ears:
+    """Ears for a session's world."""
+    return maker.ears(session.understanding.phrases())
 
-    Args:
-        session: what is heard changes its program.
-        model: the speech model.
-        free: recognise any words; whether they are meant for the robot is then for the parser alone.
+
+def hear_file(path: Path, ears: Ears, session: Session) -> tuple[Utterance, Answer]:
+    """Hears a recording and carries out what it says.
+
+    Raises:
+        SpeechError: it can't be read.
     """
+    return hear(file_blocks(path), path.name, ears, session)
 
-    def __init__(self, session: Session, model: VoskModel, free: bool = False) -> None:
-        self._session = session
-        self._free = VoskRecogniser(model)
-        self._phrased = (
-            self._free if free else VoskRecogniser(model, session.understanding.phrases())
-        )
-        self._is_free = free
 
-    def words(self, path: Path) -> Utterance:
-        """What a recording says.
-
-        Raises:
-            SpeechError: it can't be read.
-        """
-        pieces = list(self._phrased.hear(file_blocks(path)))
-        freely = None if self._is_free else self._free.words
-        return utterance(pieces, self._session.parses, freely)
-
-    def file(self, path: Path) -> tuple[Utterance, Answer]:
-        """Hears a recording and carries out what it says."""
-        said = self.words(path)
-        if said.accepted or (said.text and not self._session.parses(said.text)):
-            return said, self._session.say(said.text, source=path.name)
-        return said, not_meant(self._session, said)
+def hear(
+    blocks: Iterable[bytes], source: str, ears: Ears, session: Session
+) -> tuple[Utterance, Answer]:
+    """Hears sound and carries out what it says."""
+    weigh = weigher(session)
+    said = ears.utterance(blocks, weigh)
+    if said.accepted or (said.text and weigh(said.text) is None):
+        return said, session.say(said.text, source=source)
+    return said, not_meant(session, said)
 
 
 def not_meant(session: Session, said: Utterance) -> Answer:

@@ -14,7 +14,7 @@ RATE = 16_000
 """Samples a second that the recogniser takes."""
 BLOCK = RATE // 10
 """Samples a block: 100 ms."""
-_INSTALL = 'Install the voice packages with: pip install "polaris-nl[voice]"'
+INSTALL = 'Install the voice packages with: pip install "polaris-nl[voice]"'
 
 
 def file_blocks(path: Path) -> Iterator[bytes]:
@@ -30,7 +30,7 @@ def file_blocks(path: Path) -> Iterator[bytes]:
         import soundfile
         import soxr
     except ImportError as error:
-        raise SpeechError(f"Reading a recording needs {error.name}. {_INSTALL}") from error
+        raise SpeechError(f"Reading a recording needs {error.name}. {INSTALL}") from error
     if not path.is_file():
         raise SpeechError(f"There is no recording {path}. Check the path.")
     if path.stat().st_size == 0:
@@ -109,7 +109,7 @@ def _input(device: str | None) -> Iterator[queue.Queue[bytes]]:
     try:
         import sounddevice
     except ImportError as error:
-        raise SpeechError(f"A microphone needs sounddevice. {_INSTALL}") from error
+        raise SpeechError(f"A microphone needs sounddevice. {INSTALL}") from error
     except OSError as error:
         raise SpeechError(
             "A microphone needs the PortAudio library; install it with: sudo scripts/install-system voice"
