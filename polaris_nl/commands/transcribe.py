@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from argparse import Namespace
-from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from polaris_nl.commands.common import complain, print_json, print_text, session_of
+from polaris_nl.hands_free.phrases import spoken_phrases
+from polaris_nl.hands_free.recording import kept
 from polaris_nl.hands_free.weight import weigher
 from polaris_nl.language.interpretation import Refusal
-from polaris_nl.model.errors import SpeechError
+from polaris_nl.logs.reader import read_log
+from polaris_nl.model.errors import LogError, SpeechError
 from polaris_nl.session import Session
 from polaris_nl.snapshot import Answer, answer_json
 from polaris_nl.speech.audio import file_blocks
@@ -34,8 +36,11 @@ def run(arguments: Namespace) -> int:
             if number and not arguments.dialogue:
                 session.begin_again(start)
             try:
+                if path.suffix == ".mcap":
+                    code = replay(path, ears, session, arguments.json) or code
+                    continue
                 said, answer = hear_file(path, ears, session)
-            except SpeechError as error:
+            except (SpeechError, LogError) as error:
                 complain(str(error))
                 if arguments.json:
                     print_json(
@@ -53,9 +58,26 @@ def run(arguments: Namespace) -> int:
     return code
 
 
+def replay(path: Path, ears: Ears, session: Session, as_json: bool) -> int:
+    """Hears the sound that a log keeps again, as the conversation that it was; 1 where some isn't understood.
+
+    Raises:
+        LogError: it can't be read, or keeps no sound.
+    """
+    sounds = read_log(path).sounds
+    if not sounds:
+        raise LogError(f"The log {path} keeps no sound; listen --log FILE --record keeps it.")
+    code = 0
+    for name, audio in kept(sounds):
+        said, answer = take(ears.piece(audio, weigher(session)), name, session)
+        show(Path(name), said, answer, session, as_json)
+        code = code or int(answer.interpretation.outcome == "refused")
+    return code
+
+
 def ears_for(session: Session, maker: EarMaker) -> Ears:
     """Ears for a session's world."""
-    return maker.ears(session.understanding.phrases())
+    return maker.ears(spoken_phrases(session.understanding))
 
 
 def hear_file(path: Path, ears: Ears, session: Session) -> tuple[Utterance, Answer]:
@@ -64,16 +86,12 @@ def hear_file(path: Path, ears: Ears, session: Session) -> tuple[Utterance, Answ
     Raises:
         SpeechError: it can't be read.
     """
-    return hear(file_blocks(path), path.name, ears, session)
+    return take(ears.utterance(file_blocks(path), weigher(session)), path.name, session)
 
 
-def hear(
-    blocks: Iterable[bytes], source: str, ears: Ears, session: Session
-) -> tuple[Utterance, Answer]:
-    """Hears sound and carries out what it says."""
-    weigh = weigher(session)
-    said = ears.utterance(blocks, weigh)
-    if said.accepted or (said.text and weigh(said.text) is None):
+def take(said: Utterance, source: str, session: Session) -> tuple[Utterance, Answer]:
+    """Carries out what was said."""
+    if said.accepted or (said.text and weigher(session)(said.text) is None):
         return said, session.say(said.text, source=source)
     return said, not_meant(session, said)
 

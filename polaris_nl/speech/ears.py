@@ -9,10 +9,18 @@ from polaris_nl.speech.activity import Activity, SileroActivity
 from polaris_nl.speech.hearing import Utterance, Ways, utterance
 from polaris_nl.speech.lexicon import SoundAlikes, sound_alikes
 from polaris_nl.speech.models import NARROW, model_folder
-from polaris_nl.speech.recogniser import Decoder, pieces
+from polaris_nl.speech.recogniser import Decoder, Spoken, pieces
 from polaris_nl.speech.repair import Repairer
 from polaris_nl.speech.vosk_recogniser import VoskModel, VoskRecogniser
 from polaris_nl.speech.weight import Weigh
+
+_ORDINARY = (
+    "the a and to you i it is that was he she we they of in on for with at by so not what have are do this "
+    "me my can will just no yes go get bring put take tell who how where when if then but or up out down top "
+    "shop step soap drop spot cause course pass past please house"
+)
+"""Words that other speech is made of, and words that sound like a quick one: what is none of these is quick."""
+QUICK_PHRASES = ("stop", "pause", "stop stop stop", *_ORDINARY.split())
 
 
 @dataclass(frozen=True)
@@ -22,12 +30,14 @@ class Ears:
     Attributes:
         phrased: hears the world's phrases.
         free: hears anything, for a second opinion; None where `phrased` does.
+        quick: hears little but the words that act at once.
         activity: where speech is.
         ways: what helps to make sense of what was heard.
     """
 
     phrased: Decoder
     free: Decoder | None
+    quick: Decoder
     activity: Activity
     ways: Ways
 
@@ -39,6 +49,17 @@ class Ears:
     def utterance(self, blocks: Iterable[bytes], weigh: Weigh) -> Utterance:
         """What a recording says as a whole."""
         found = list(pieces(blocks, self.activity, self.phrased, self.free))
+        return utterance(found, weigh, self.ways)
+
+    def piece(self, audio: bytes, weigh: Weigh) -> Utterance:
+        """What one piece of speech says, that was cut out before."""
+        self.phrased.feed(audio)
+        texts = self.phrased.finish()
+        free: tuple[str, ...] = ()
+        if self.free is not None:
+            self.free.feed(audio)
+            free = self.free.finish()
+        found = [Spoken(texts, audio, free[0] if free else "")] if texts else []
         return utterance(found, weigh, self.ways)
 
 
@@ -67,11 +88,13 @@ class EarMaker:
         phrased = VoskRecogniser(self._wide, alikes.listened_for(phrases))
         free = VoskRecogniser(self._narrow)
         ways = Ways(alikes, Repairer(vocabulary))
-        return Ears(phrased.decoder(), free.decoder(), self._activity(), ways)
+        quick = VoskRecogniser(self._narrow, QUICK_PHRASES, alternatives=1)
+        return Ears(phrased.decoder(), free.decoder(), quick.decoder(), self._activity(), ways)
 
     def free_ears(self) -> Ears:
         """Ears that expect nothing in particular."""
-        return Ears(VoskRecogniser(self._wide).decoder(), None, self._activity(), Ways())
+        decoder = VoskRecogniser(self._wide).decoder()
+        return Ears(decoder, None, decoder, self._activity(), Ways())
 
 
 def gaps_in_words(alikes: SoundAlikes, names: Iterable[str]) -> list[str]:

@@ -36,6 +36,7 @@ class Utterance:
         alternatives: what else it may have been, of the first piece.
         audio_s: seconds of audio.
         free: what a recogniser that expects nothing in particular heard.
+        different: how far the two are apart, from 0 to 1.
         repaired: the words before they were mended, or "".
         why_not: why it isn't accepted, for the log; or "".
     """
@@ -45,6 +46,7 @@ class Utterance:
     alternatives: tuple[str, ...] = ()
     audio_s: float = 0.0
     free: str = ""
+    different: float = 0.0
     repaired: str = ""
     why_not: str = ""
 
@@ -80,19 +82,21 @@ def utterance(pieces: Sequence[Spoken], weigh: Weigh, ways: Ways = Ways()) -> Ut
         chosen = found or [*chosen, ways.alikes.put_back(piece.alternatives[0])[-1]]
     text = BREAK.join(chosen)
     free = " ".join(piece.free for piece in pieces if piece.free)
-    why_not = _why_not(text, free, weigh)
+    different = difference(text, free)
+    why_not = _why_not(text, different, weigh)
     return Utterance(
         text,
         accepted=not why_not,
         alternatives=pieces[0].alternatives if pieces else (),
         audio_s=sum(piece.seconds for piece in pieces),
         free=free,
+        different=different,
         repaired=repaired,
         why_not=why_not,
     )
 
 
-def _why_not(text: str, free: str, weigh: Weigh) -> str:
+def _why_not(text: str, different: float, weigh: Weigh) -> str:
     if not text:
         return "no words"
     if UNKNOWN in text:
@@ -100,7 +104,6 @@ def _why_not(text: str, free: str, weigh: Weigh) -> str:
     weight = weigh(text)
     if weight is None:
         return "not understood"
-    different = difference(text, free)
     if different > MOST_DIFFERENT[weight]:
         return f"heard freely it is {different:.2f} different"
     return ""
@@ -112,6 +115,19 @@ def difference(text: str, free: str) -> float:
 
     plain = text.replace(BREAK, " ")
     return float(Levenshtein.normalized_distance(plain, free)) if free else 0.0
+
+
+def near(pieces: Sequence[Spoken], weigh: Weigh, ways: Ways = Ways(), most: int = 3) -> list[str]:
+    """Sentences that make sense and are near what was heard, for a question about which was meant."""
+    found: dict[str, None] = {}
+    for piece in pieces:
+        repairs = _repairs(piece, ways.repairer) if ways.repairer is not None else iter(())
+        for text in itertools.chain(_readings(piece, ways.alikes), repairs):
+            if weigh(text) is not None:
+                found[text] = None
+            if len(found) == most:
+                return list(found)
+    return list(found)
 
 
 def _readings(piece: Spoken, alikes: SoundAlikes) -> Iterator[str]:

@@ -8,13 +8,14 @@ from pathlib import Path
 from typing import Any
 
 from polaris_nl.model.errors import SpeechError
-from polaris_nl.speech.audio import INSTALL, RATE
+from polaris_nl.speech.audio import BLOCK, INSTALL, RATE
 from polaris_nl.speech.models import MEND, WIDE, tuned
 from polaris_nl.speech.recogniser import UNKNOWN
 
 ALTERNATIVES = 30
 """Readings of one piece of speech that are looked at: the first that makes sense wins."""
 _ERRORS_ONLY = -2
+_BLOCK_BYTES = BLOCK * 2
 
 
 class VoskModel:
@@ -98,10 +99,18 @@ class VoskDecoder:
         self._inner = inner
         self._inner.SetMaxAlternatives(alternatives)
         self._done: list[str] = []
+        self._rest = b""
 
     def feed(self, sound: bytes) -> None:
-        """Takes more of the piece."""
-        if self._inner.AcceptWaveform(sound):
+        """Takes more of the piece, and hands it on in blocks of one size: what Vosk hears depends on it."""
+        sound = self._rest + sound
+        whole = len(sound) // _BLOCK_BYTES * _BLOCK_BYTES
+        for at in range(0, whole, _BLOCK_BYTES):
+            self._accept(sound[at : at + _BLOCK_BYTES])
+        self._rest = sound[whole:]
+
+    def _accept(self, block: bytes) -> None:
+        if self._inner.AcceptWaveform(block):
             # Vosk thinks that a sentence has ended; whether it has is decided elsewhere.
             self._done += _texts(self._inner.Result())[:1]
 
@@ -112,7 +121,9 @@ class VoskDecoder:
 
     def finish(self) -> tuple[str, ...]:
         """What the piece may have been; resets Vosk, so that nothing of it colours the next piece."""
-        done, self._done = " ".join(self._done), []
+        if self._rest:
+            self._accept(self._rest)
+        done, self._done, self._rest = " ".join(self._done), [], b""
         found = _texts(self._inner.FinalResult()) or ([""] if done else [])
         return tuple(f"{done} {text}".strip() for text in found)
 
