@@ -65,7 +65,7 @@ def run(arguments: Namespace) -> int:
             MicroWakeWord() if arguments.mode == "wake" else None,
             AudioKeeper(log).keep if log is not None and arguments.record else None,
         )  # fmt: skip
-        runs = Runs(conversation, sink, lambda text: _tell(face, speaker, text))
+        runs = Runs(conversation, sink, lambda text: _tell(face, speaker, text), arguments.log)
         listening.started = runs.start
         if speaker is not None:
             speaker.changed = listening.spoke
