@@ -12,10 +12,10 @@ from pathlib import Path
 
 from polaris_nl.automaton.program import program_json
 from polaris_nl.commands.common import complain, print_json, print_text, session_of
+from polaris_nl.commands.transcribe import ears_for
 from polaris_nl.execution.events import Event
 from polaris_nl.hands_free.conversation import Conversation, Reply
 from polaris_nl.hands_free.listening import Listening
-from polaris_nl.hands_free.phrases import spoken_phrases
 from polaris_nl.hands_free.recording import AudioKeeper
 from polaris_nl.hands_free.running import Runs
 from polaris_nl.logs.writer import LogWriter, attachments_of
@@ -47,7 +47,7 @@ def run(arguments: Namespace) -> int:
         return _level(source, arguments.json)
     maker = EarMaker()
     with _parts(arguments) as (session, log):
-        ears = maker.ears(spoken_phrases(session.understanding))
+        ears = ears_for(session, maker, arguments.recogniser)
         face = _Face(session, arguments.json)
         names = (n for e in session.world.entities.values() for n in (e.spoken, *e.synonyms))
         for text in gaps_in_words(ears.alikes, names):

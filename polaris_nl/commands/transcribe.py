@@ -30,7 +30,9 @@ def run(arguments: Namespace) -> int:
     code = 0
     maker = EarMaker()
     with session_of(arguments) as session:
-        ears = maker.free_ears() if arguments.free else ears_for(session, maker)
+        ears = (
+            maker.free_ears() if arguments.free else ears_for(session, maker, arguments.recogniser)
+        )
         start = session.snapshot.automaton
         for number, path in enumerate(arguments.files):
             if number and not arguments.dialogue:
@@ -75,9 +77,14 @@ def replay(path: Path, ears: Ears, session: Session, as_json: bool) -> int:
     return code
 
 
-def ears_for(session: Session, maker: EarMaker) -> Ears:
-    """Ears for a session's world."""
-    return maker.ears(spoken_phrases(session.understanding))
+def ears_for(session: Session, maker: EarMaker, recogniser: str = "vosk") -> Ears:
+    """Ears for a session's world.
+
+    Raises:
+        SpeechError: the recogniser's packages are missing.
+    """
+    phrases = spoken_phrases(session.understanding)
+    return maker.whisper_ears(phrases) if recogniser == "whisper" else maker.ears(phrases)
 
 
 def hear_file(path: Path, ears: Ears, session: Session) -> tuple[Utterance, Answer]:

@@ -91,6 +91,19 @@ class EarMaker:
         quick = VoskRecogniser(self._narrow, QUICK_PHRASES, alternatives=1)
         return Ears(phrased.decoder(), free.decoder(), quick.decoder(), self._activity(), ways)
 
+    def whisper_ears(self, phrases: Sequence[str]) -> Ears:
+        """Ears of the second recogniser: it knows no phrases, so what it hears is mended toward them.
+
+        Raises:
+            SpeechError: its packages are missing.
+        """
+        from polaris_nl.speech.whisper_recogniser import WhisperRecogniser
+
+        vocabulary = {word for phrase in phrases for word in phrase.split()}
+        quick = VoskRecogniser(self._narrow, QUICK_PHRASES, alternatives=1)
+        ways = Ways(repairer=Repairer(vocabulary))
+        return Ears(WhisperRecogniser().decoder(), None, quick.decoder(), self._activity(), ways)
+
     def free_ears(self) -> Ears:
         """Ears that expect nothing in particular."""
         decoder = VoskRecogniser(self._wide).decoder()
