@@ -16,6 +16,7 @@ from polaris_nl.commands.transcribe import ears_for
 from polaris_nl.execution.events import Event
 from polaris_nl.hands_free.conversation import Conversation, Reply
 from polaris_nl.hands_free.listening import Listening
+from polaris_nl.hands_free.phrases import spoken_names
 from polaris_nl.hands_free.recording import AudioKeeper
 from polaris_nl.hands_free.running import Runs
 from polaris_nl.logs.writer import LogWriter, attachments_of
@@ -49,8 +50,7 @@ def run(arguments: Namespace) -> int:
     with _parts(arguments) as (session, log):
         ears = ears_for(session, maker, arguments.recogniser)
         face = _Face(session, arguments.json)
-        names = (n for e in session.world.entities.values() for n in (e.spoken, *e.synonyms))
-        for text in gaps_in_words(ears.alikes, names):
+        for text in gaps_in_words(ears.alikes, spoken_names(session.understanding)):
             complain(text)
 
         def sink(event: Event) -> None:

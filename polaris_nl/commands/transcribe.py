@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from polaris_nl.commands.common import complain, print_json, print_text, session_of
-from polaris_nl.hands_free.phrases import spoken_phrases
+from polaris_nl.hands_free.phrases import spoken_names, spoken_phrases
 from polaris_nl.hands_free.recording import kept
 from polaris_nl.hands_free.weight import weigher
 from polaris_nl.language.interpretation import Refusal
@@ -84,7 +84,9 @@ def ears_for(session: Session, maker: EarMaker, recogniser: str = "vosk") -> Ear
         SpeechError: the recogniser's packages are missing.
     """
     phrases = spoken_phrases(session.understanding)
-    return maker.whisper_ears(phrases) if recogniser == "whisper" else maker.ears(phrases)
+    if recogniser == "whisper":
+        return maker.whisper_ears(phrases)
+    return maker.ears(phrases, spoken_names(session.understanding))
 
 
 def hear_file(path: Path, ears: Ears, session: Session) -> tuple[Utterance, Answer]:

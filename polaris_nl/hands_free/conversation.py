@@ -14,8 +14,8 @@ from polaris_nl.execution.events import Event, Said
 from polaris_nl.execution.events import Heard as HeardEvent
 from polaris_nl.execution.state import HumanCommand
 from polaris_nl.hands_free.choices import Choices, choices_among
+from polaris_nl.hands_free.phrases import spoken_names
 from polaris_nl.hands_free.running import Running, told
-from polaris_nl.language.tokens import phrase
 from polaris_nl.session import Session
 from polaris_nl.snapshot import Answer
 from polaris_nl.speech.hearing import Utterance
@@ -70,8 +70,7 @@ class Conversation:
         self.now = now
         self._failures = 0
         self._choices: Choices | None = None
-        entities = session.world.entities.values()
-        self._names = {" ".join(phrase(n)) for e in entities for n in (e.spoken, *e.synonyms)}
+        self._names = spoken_names(session.understanding)
 
     @property
     def _runs(self) -> Running | None:

@@ -9,7 +9,7 @@ from pathlib import Path
 from polaris_nl.automaton.program import program_json
 from polaris_nl.hands_free.conversation import Conversation, Reply
 from polaris_nl.hands_free.listening import Listening
-from polaris_nl.hands_free.phrases import spoken_phrases
+from polaris_nl.hands_free.phrases import spoken_names, spoken_phrases
 from polaris_nl.hands_free.recording import AudioKeeper
 from polaris_nl.hands_free.running import Runs
 from polaris_nl.logs.writer import LogWriter, attachments_of
@@ -79,7 +79,9 @@ class Talk:
             program_json(self.session.program), world_.domain.source, world_.source
         )
         self.log = LogWriter(log, attachments) if log is not None else None
-        self.ears: Ears = maker.ears(spoken_phrases(self.session.understanding))
+        self.ears: Ears = maker.ears(
+            spoken_phrases(self.session.understanding), spoken_names(self.session.understanding)
+        )
         if self.log is not None:
             write = self.log.write
             self.session.report_to(lambda event: (write(event), None)[1])
