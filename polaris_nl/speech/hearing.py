@@ -22,11 +22,11 @@ MOST_DIFFERENT: Mapping[Weight, float] = {
 """The most that free decoding may differ, in characters of the longer text."""
 SHORT, MORE_FOR_SHORT = 2, 0.15
 """A few words are heard freely as others that sound alike: so many words may differ by so much more."""
-ALIKE_ENOUGH = 0.06
-"""Readings that differ by no more from what was heard freely are taken without looking at others."""
+NEAR = 0.2
+"""How far from the likeliest reading the free decoding may be to be a reading itself, where others make sense."""
 LOOKED_AT, TRIED = 4, 16
 """Readings that make sense, and readings of all, after which no more are looked at."""
-RANK_COST, ASKING_COST, FREE_COST = 0.01, 0.15, 0.05
+RANK_COST, ASKING_COST, FREE_COST = 0.01, 0.15, 0.015
 """What speaks against a reading besides its difference: each place in the list, that it makes sense only in
 part, and that nothing but the free decoding has it."""
 MOST_REPAIRED = 0.3
@@ -113,7 +113,7 @@ def _why_not(text: str, different: float, weigh: Weigh) -> str:
     if weight is None:
         return "not understood"
     allowed = MOST_DIFFERENT[weight]
-    if len(text.split()) <= SHORT and weight is not Weight.ASKING:
+    if len(text.split()) <= SHORT and weight in (Weight.HARMLESS, Weight.MOVING):
         allowed += MORE_FOR_SHORT
     return f"heard freely it is {different:.2f} different" if different > allowed else ""
 
@@ -146,14 +146,15 @@ def _best(chosen: list[str], piece: Spoken, weigh: Weigh, ways: Ways) -> _Found 
     found: list[_Found] = []
     for rank, reading in enumerate(itertools.islice(_readings(piece, ways.alikes), TRIED)):
         found += _placed(chosen, reading, piece.free, RANK_COST * rank, weigh)
-        if len(found) >= LOOKED_AT or (found and found[-1].cost <= ALIKE_ENOUGH + RANK_COST * rank):
+        if len(found) >= LOOKED_AT or reading == piece.free:
             break
     if not found:
         rest = itertools.islice(_readings(piece, ways.alikes), TRIED, None)
         for reading in rest:
             if found := _placed(chosen, reading, piece.free, 0.0, weigh):
                 break
-    if piece.free and ways.repairer is not None and not any(f.cost <= FREE_COST for f in found):
+    heard_so = piece.free and difference(piece.alternatives[0], piece.free) <= NEAR
+    if piece.free and ways.repairer is not None and (heard_so or not found):
         for one in _placed(chosen, piece.free, piece.free, FREE_COST, weigh):
             found.append(replace(one, repaired=True))
     if not found and ways.repairer is not None:
