@@ -22,8 +22,13 @@ MOST_DIFFERENT: Mapping[Weight, float] = {
 """The most that free decoding may differ, in characters of the longer text."""
 SHORT, MORE_FOR_SHORT = 2, 0.15
 """A few words are heard freely as others that sound alike: so many words may differ by so much more."""
+LONG, LONG_HARMLESS = 5, 0.2
+"""A question of so many words may differ by no more: there is much that other people's talk can pass for."""
+FOREIGN_WORDS, FEW_DIFFERENT = 2, 0.25
+"""So many words that mean nothing here, and sound like none of those heard, are other people's talk, unless
+the two decodings differ by no more than this."""
 NEAR = 0.2
-"""How far from the likeliest reading the free decoding may be to be a reading itself, where others make sense."""
+"""How far from the likeliest reading the free decoding may be to be one itself, where others make sense."""
 LOOKED_AT, TRIED = 4, 16
 """Readings that make sense, and readings of all, after which no more are looked at."""
 RANK_COST, ASKING_COST, FREE_COST = 0.01, 0.15, 0.015
@@ -91,7 +96,7 @@ def utterance(pieces: Sequence[Spoken], weigh: Weigh, ways: Ways = Ways()) -> Ut
     text = BREAK.join(chosen)
     free = " ".join(piece.free for piece in pieces if piece.free)
     different = difference(text, free)
-    why_not = _why_not(text, different, weigh)
+    why_not = _why_not(text, free, different, weigh, ways)
     return Utterance(
         text,
         accepted=not why_not,
@@ -104,7 +109,7 @@ def utterance(pieces: Sequence[Spoken], weigh: Weigh, ways: Ways = Ways()) -> Ut
     )
 
 
-def _why_not(text: str, different: float, weigh: Weigh) -> str:
+def _why_not(text: str, free: str, different: float, weigh: Weigh, ways: Ways) -> str:
     if not text:
         return "no words"
     if UNKNOWN in text:
@@ -112,10 +117,21 @@ def _why_not(text: str, different: float, weigh: Weigh) -> str:
     weight = weigh(text)
     if weight is None:
         return "not understood"
-    allowed = MOST_DIFFERENT[weight]
-    if len(text.split()) <= SHORT and weight in (Weight.HARMLESS, Weight.MOVING):
-        allowed += MORE_FOR_SHORT
-    return f"heard freely it is {different:.2f} different" if different > allowed else ""
+    if different > _allowed(weight, len(text.split())):
+        return f"heard freely it is {different:.2f} different"
+    if different > FEW_DIFFERENT and ways.repairer is not None:
+        foreign = ways.repairer.foreign(text, free)
+        if len(foreign) >= FOREIGN_WORDS:
+            return f"it is about {', '.join(foreign)}"
+    return ""
+
+
+def _allowed(weight: Weight, words: int) -> float:
+    """How far the two decodings of so many words may be apart."""
+    if weight is Weight.HARMLESS and words >= LONG:
+        return LONG_HARMLESS
+    short = words <= SHORT and weight in (Weight.HARMLESS, Weight.MOVING)
+    return MOST_DIFFERENT[weight] + (MORE_FOR_SHORT if short else 0.0)
 
 
 def difference(text: str, free: str) -> float:
@@ -146,7 +162,8 @@ def _best(chosen: list[str], piece: Spoken, weigh: Weigh, ways: Ways) -> _Found 
     found: list[_Found] = []
     for rank, reading in enumerate(itertools.islice(_readings(piece, ways.alikes), TRIED)):
         found += _placed(chosen, reading, piece.free, RANK_COST * rank, weigh)
-        if len(found) >= LOOKED_AT or reading == piece.free:
+        whole = bool(found) and found[-1].pieces[-1] == piece.free and found[-1].cost < ASKING_COST
+        if len(found) >= LOOKED_AT or whole:
             break
     if not found:
         rest = itertools.islice(_readings(piece, ways.alikes), TRIED, None)

@@ -96,6 +96,18 @@ def test_talk_that_makes_sense_only_in_part_is_left_alone() -> None:
     assert not utterance([piece], when(lambda t: "dock" in t, Weight.ASKING)).accepted
 
 
+def test_a_sentence_with_words_of_another_world_is_left_alone() -> None:
+    piece = spoken(
+        "please go via the dock at the table", free="please don't feed the dog at the table"
+    )
+    ways = Ways(repairer=Repairer(["please", "go", "via", "the", "dock", "at", "table"]))
+    weigh = when(lambda t: "dock" in t)
+    assert utterance([piece], weigh).accepted
+    said = utterance([piece], weigh, ways)
+    assert not said.accepted
+    assert said.why_not == "it is about don't, feed"
+
+
 def test_a_short_command_may_be_heard_freely_as_what_sounds_alike() -> None:
     weigh = when(lambda t: t == "redo")
     assert utterance([spoken("redo", free="read though")], weigh).accepted
