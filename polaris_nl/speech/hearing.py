@@ -1,29 +1,43 @@
 """From what may have been said to what was said: the first reading that makes sense.
 
 Vosk with phrases turns any speech into phrases. So every reading is parsed strictly, and the same
-audio is decoded
-freely: where the two differ too much, the words were not meant for the robot.
+audio is decoded freely: where the two differ too much, the words were not meant for the robot. The
+more a mistake would cost, the better the two must agree.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+import itertools
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
+from polaris_nl.speech.lexicon import SoundAlikes
 from polaris_nl.speech.recogniser import UNKNOWN, Spoken
+from polaris_nl.speech.repair import MOST_TRIED, Repairer, apart
+from polaris_nl.speech.weight import Weigh, Weight
 
-MOST_DIFFERENT = 0.65
-"""The most that free decoding may differ, in characters of the longer text. Measured: true commands stay below
-0.18 (clean, 95 %) and 0.50 (10 dB of noise), chatter that passed for a command is above 0.76."""
-
-SHORT = 5
-"""Words up to which a second opinion is asked. What chatter passes for is a short command amid other words;
-a longer sentence that parses strictly was meant, and decoding it again would keep the speaker waiting."""
+MOST_DIFFERENT: Mapping[Weight, float] = {
+    Weight.ASKING: 0.15, Weight.HARMLESS: 0.5, Weight.CHANGING: 0.5, Weight.MOVING: 0.45,
+}  # fmt: skip
+"""The most that free decoding may differ, in characters of the longer text."""
+SHORT, MORE_FOR_SHORT = 2, 0.15
+"""A few words are heard freely as others that sound alike: so many words may differ by so much more."""
+LONG, LONG_HARMLESS = 5, 0.2
+"""A question of so many words may differ by no more: there is much that other people's talk can pass for."""
+FOREIGN_WORDS, FEW_DIFFERENT = 2, 0.25
+"""So many words that mean nothing here, and sound like none of those heard, are other people's talk, unless
+the two decodings differ by no more than this."""
+NEAR = 0.2
+"""How far from the likeliest reading the free decoding may be to be one itself, where others make sense."""
+LOOKED_AT, TRIED = 4, 16
+"""Readings that make sense, and readings of all, after which no more are looked at."""
+RANK_COST, ASKING_COST, FREE_COST = 0.01, 0.15, 0.015
+"""What speaks against a reading besides its difference: each place in the list, that it makes sense only in
+part, and that nothing but the free decoding has it."""
+MOST_REPAIRED = 0.3
+"""How different a repaired sentence may sound from what was heard freely."""
 
 BREAK = ". "
-
-Parses = Callable[[str], bool]
-"""Whether words, in their place after what was said before, are understood."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,55 +49,183 @@ class Utterance:
         accepted: whether it is taken for speech to the robot.
         alternatives: what else it may have been, of the first piece.
         audio_s: seconds of audio.
+        free: what a recogniser that expects nothing in particular heard.
+        different: how far the two are apart, from 0 to 1.
+        repaired: the words before they were mended, or "".
+        why_not: why it isn't accepted, for the log; or "".
     """
 
     text: str
     accepted: bool
     alternatives: tuple[str, ...] = ()
     audio_s: float = 0.0
+    free: str = ""
+    different: float = 0.0
+    repaired: str = ""
+    why_not: str = ""
 
 
-def utterance(
-    pieces: Sequence[Spoken], parses: Parses, freely: Callable[[bytes], str] | None = None
-) -> Utterance:
+@dataclass(frozen=True)
+class Ways:
+    """What helps to make sense of what was heard.
+
+    Attributes:
+        alikes: words that were listened for under other words.
+        repairer: finds sentences near what was heard; None for none.
+    """
+
+    alikes: SoundAlikes = field(default_factory=SoundAlikes)
+    repairer: Repairer | None = None
+
+
+def utterance(pieces: Sequence[Spoken], weigh: Weigh, ways: Ways = Ways()) -> Utterance:
     """What pieces of speech said together.
 
     Args:
         pieces: in order; the pauses between them may be ends of sentences or hesitations.
-        parses: the strict test.
-        freely: decodes the audio without phrases, for the second opinion.
+        weigh: the strict test, and what a mistake would cost.
+        ways: what helps to make sense of them.
     """
     chosen: list[str] = []
+    repaired = ""
     for piece in pieces:
-        chosen = _with(chosen, _readable(piece), parses) or [*chosen, piece.alternatives[0]]
+        found = _best(chosen, piece, weigh, ways)
+        repaired = repaired or (piece.alternatives[0] if found and found.repaired else "")
+        heard = ways.alikes.put_back(piece.alternatives[0])[-1]
+        chosen = found.pieces if found else [*chosen, heard]
     text = BREAK.join(chosen)
-    accepted = bool(text) and UNKNOWN not in text and parses(text)
-    if accepted and freely is not None and len(text.split()) <= SHORT:
-        accepted = _borne_out(text, " ".join(freely(piece.audio) for piece in pieces))
-    alternatives = pieces[0].alternatives if pieces else ()
-    return Utterance(text, accepted, alternatives, sum(piece.seconds for piece in pieces))
+    free = " ".join(piece.free for piece in pieces if piece.free)
+    different = difference(text, free)
+    why_not = _why_not(text, free, different, weigh, ways)
+    return Utterance(
+        text,
+        accepted=not why_not,
+        alternatives=pieces[0].alternatives if pieces else (),
+        audio_s=sum(piece.seconds for piece in pieces),
+        free=free,
+        different=different,
+        repaired=repaired,
+        why_not=why_not,
+    )
 
 
-def _readable(piece: Spoken) -> tuple[str, ...]:
-    return tuple(text for text in piece.alternatives if UNKNOWN not in text)
+def _why_not(text: str, free: str, different: float, weigh: Weigh, ways: Ways) -> str:
+    if not text:
+        return "no words"
+    if UNKNOWN in text:
+        return "unknown words"
+    weight = weigh(text)
+    if weight is None:
+        return "not understood"
+    if different > _allowed(weight, len(text.split())):
+        return f"heard freely it is {different:.2f} different"
+    if different > FEW_DIFFERENT and ways.repairer is not None:
+        foreign = ways.repairer.foreign(text, free)
+        if len(foreign) >= FOREIGN_WORDS:
+            return f"it is about {', '.join(foreign)}"
+    return ""
 
 
-def _with(chosen: list[str], readings: Iterable[str], parses: Parses) -> list[str] | None:
-    """The pieces with the first reading that makes sense as a new sentence or as more of the last."""
-    readings = tuple(readings)
-    for reading in readings:
-        if parses(BREAK.join([*chosen, reading])):
-            return [*chosen, reading]
-    if chosen:
-        for reading in readings:
-            joined = [*chosen[:-1], f"{chosen[-1]} {reading}"]
-            if parses(BREAK.join(joined)):
-                return joined
-    return None
+def _allowed(weight: Weight, words: int) -> float:
+    """How far the two decodings of so many words may be apart."""
+    if weight is Weight.HARMLESS and words >= LONG:
+        return LONG_HARMLESS
+    short = words <= SHORT and weight in (Weight.HARMLESS, Weight.MOVING)
+    return MOST_DIFFERENT[weight] + (MORE_FOR_SHORT if short else 0.0)
 
 
-def _borne_out(text: str, free: str) -> bool:
+def difference(text: str, free: str) -> float:
+    """How far the two decodings are apart, in characters of the longer one; 0 without a second one.
+
+    A few words are compared by their sound as well: freely, they are heard as others that sound alike.
+    """
     from rapidfuzz.distance import Levenshtein
 
     plain = text.replace(BREAK, " ")
-    return bool(Levenshtein.normalized_distance(plain, free) <= MOST_DIFFERENT)
+    if not free:
+        return 0.0
+    by_letter = float(Levenshtein.normalized_distance(plain, free))
+    return min(by_letter, apart(plain, free)) if len(plain.split()) <= SHORT else by_letter
+
+
+@dataclass(frozen=True, slots=True)
+class _Found:
+    """The pieces so far with a reading of the next one."""
+
+    pieces: list[str]
+    cost: float
+    repaired: bool = False
+
+
+def _best(chosen: list[str], piece: Spoken, weigh: Weigh, ways: Ways) -> _Found | None:
+    """The reading that makes sense and that most speaks for; None if none makes sense."""
+    found: list[_Found] = []
+    for rank, reading in enumerate(itertools.islice(_readings(piece, ways.alikes), TRIED)):
+        found += _placed(chosen, reading, piece.free, RANK_COST * rank, weigh)
+        whole = bool(found) and found[-1].pieces[-1] == piece.free and found[-1].cost < ASKING_COST
+        if len(found) >= LOOKED_AT or whole:
+            break
+    if not found:
+        rest = itertools.islice(_readings(piece, ways.alikes), TRIED, None)
+        for reading in rest:
+            if found := _placed(chosen, reading, piece.free, 0.0, weigh):
+                break
+    heard_so = piece.free and difference(piece.alternatives[0], piece.free) <= NEAR
+    if piece.free and ways.repairer is not None and (heard_so or not found):
+        for one in _placed(chosen, piece.free, piece.free, FREE_COST, weigh):
+            found.append(replace(one, repaired=True))
+    if not found and ways.repairer is not None:
+        return _repaired(chosen, piece, weigh, ways.repairer)
+    return min(found, key=lambda f: f.cost, default=None)
+
+
+def _placed(chosen: list[str], reading: str, free: str, cost: float, weigh: Weigh) -> list[_Found]:
+    """A reading as a new sentence, or as more of the last; empty where it makes no sense."""
+    ways_on = [[*chosen, reading]]
+    if chosen:
+        ways_on.append([*chosen[:-1], f"{chosen[-1]} {reading}"])
+    for pieces in ways_on:
+        weight = weigh(BREAK.join(pieces))
+        if weight is not None:
+            asking = ASKING_COST if weight is Weight.ASKING else 0.0
+            return [_Found(pieces, cost + asking + difference(reading, free))]
+    return []
+
+
+def _repaired(chosen: list[str], piece: Spoken, weigh: Weigh, repairer: Repairer) -> _Found | None:
+    """The nearest repair that makes sense as a whole: nobody is asked about words that nobody said."""
+    for text in _repairs(piece, repairer):
+        for found in _placed(chosen, text, "", 0.0, weigh):
+            if found.cost < ASKING_COST:
+                return replace(found, repaired=True)
+    return None
+
+
+def near(pieces: Sequence[Spoken], weigh: Weigh, ways: Ways = Ways(), most: int = 3) -> list[str]:
+    """Sentences that make sense and are near what was heard, for a question about which was meant."""
+    found: dict[str, None] = {}
+    for piece in pieces:
+        repairs = _repairs(piece, ways.repairer) if ways.repairer is not None else iter(())
+        for text in itertools.chain(_readings(piece, ways.alikes), repairs):
+            if weigh(text) is not None:
+                found[text] = None
+            if len(found) == most:
+                return list(found)
+    return list(found)
+
+
+def _readings(piece: Spoken, alikes: SoundAlikes) -> Iterator[str]:
+    seen = set()
+    for text in piece.alternatives:
+        for reading in alikes.put_back(text):
+            if UNKNOWN not in reading and reading not in seen:
+                seen.add(reading)
+                yield reading
+
+
+def _repairs(piece: Spoken, repairer: Repairer) -> Iterator[str]:
+    heard = [text for text in (piece.free, piece.alternatives[0]) if text and UNKNOWN not in text]
+    near = (r.text for r in repairer.candidates(heard))
+    for text in itertools.islice(near, MOST_TRIED):
+        if not piece.free or apart(text, piece.free) <= MOST_REPAIRED:
+            yield text
