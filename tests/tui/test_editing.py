@@ -159,6 +159,32 @@ def test_a_menu_takes_a_sentence_too(play: Play) -> None:
     play(script)
 
 
+def test_the_focus_comes_back_from_menus(play: Play) -> None:
+    async def script(stage: Stage) -> None:
+        main = stage.app.board.main
+        await stage.press("tab", "enter", "enter")
+        await stage.see("What should be so after start?")
+        await stage.press("escape")
+        await stage.see("─ start ─")
+        await stage.press("escape")
+        await stage.until(lambda: main.has_focus)
+        await stage.press("enter", "enter", "escape")
+        await stage.see("─ start ─")
+        await choose(stage, "add", "open some", "fridge", "add it")
+        await stage.answered()
+        await stage.until(lambda: main.has_focus)
+        await stage.press("f10")
+        await choose(stage, "help")
+        await stage.see("Help (")
+        await stage.until(lambda: main.has_focus)
+        await stage.press("escape", "escape", "f10")
+        await choose(stage, "theme", "light")
+        await stage.see("To keep it, put theme")
+        await stage.until(lambda: stage.prompt.has_focus)
+
+    play(script)
+
+
 def test_the_tree_is_walked_with_arrows(play: Play) -> None:
     async def script(stage: Stage) -> None:
         await stage.say(LUNCH)

@@ -3,13 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
 from polaris_nl.automaton.automaton import START, Automaton, Checkpoint, Transition
 from polaris_nl.automaton.edits import AddCheckpoint, apply
+from polaris_nl.execution.events import Said
+from polaris_nl.logs.writer import LogWriter
 from polaris_nl.model.formula import parse_literal
+from polaris_nl.model.wording import PlainWording
 from polaris_nl.model.world import World
+from polaris_nl.render.glyphs import ASCII
+from polaris_nl.session import Session
+from polaris_tui.plain import Plain
+from polaris_tui.progress import Progress
+from polaris_tui.scene import Scene
 from polaris_tui.transcript import Entry
 from tests.tui.conftest import Play, Stage
 
@@ -93,3 +102,42 @@ def test_in_names_and_answers(play: Play) -> None:
             assert all(text in stage.pane(name) for name in ("main", "trouble", "answers"))
 
     play(script, program=program, size=(100, 40))
+
+
+def test_in_logs(play: Play, tmp_path: Path) -> None:
+    path = tmp_path / "hostile.mcap"
+    with LogWriter(path) as writer:
+        for number, text in enumerate(HOSTILE):
+            writer.write(Said(time=float(number), text=text))
+
+    async def script(stage: Stage) -> None:
+        stage.app.open_log(path)
+        await stage.see("Log hostile.mcap")
+        for _ in HOSTILE:
+            await stage.press("down")
+            for key in ("d", "c", "c"):
+                await stage.press(key)
+                assert harmless(stage.screen())
+        assert all(text in stage.pane("main") for text in MARKUP)
+        for text in HOSTILE:
+            await stage.press("slash", "ctrl+u")
+            stage.prompt.insert_text_at_cursor(text)
+            await stage.press("enter")
+            assert harmless(stage.screen())
+
+    play(script)
+
+
+def test_line_by_line(care_home: World) -> None:
+    shown: list[str] = []
+    with Session(care_home) as session:
+        scene = Scene(
+            care_home,
+            "x",
+            session.snapshot,
+            PlainWording(care_home),
+            Progress(care_home.initial),
+            ASCII,
+        )
+        Plain(session, shown.append, scene, 80).work(HOSTILE)
+    assert all(harmless(line) for line in shown)

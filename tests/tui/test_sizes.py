@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -231,3 +232,14 @@ def test_ascii(play: Play, monkeypatch: pytest.MonkeyPatch, log: Path) -> None:
         assert stage.screen().isascii()
 
     play(script)
+
+
+def test_the_screens_in_the_documentation_are_these() -> None:
+    root = Path(__file__).parents[2]
+    golden = "\n".join(p.read_text() for p in sorted((root / "tests/golden/tui").glob("*.txt")))
+    rows = {row.rstrip() for row in golden.splitlines()}
+    rows |= {row[:97].rstrip() for row in rows}  # the left half of a wide screen
+    blocks = re.findall(r"```text\n(.*?)\n```", (root / "docs/tui.md").read_text(), re.DOTALL)
+    assert len(blocks) > 5
+    for block in blocks:
+        assert [row for row in block.splitlines() if row not in rows] == []

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from bench.tui import Terminal, keys, moves, plans
+from bench.tui import Terminal, echoes, keys, moves, plans
 from tests.tui.conftest import LIMIT_S
 from tests.tui.ssh import Tmux
 
@@ -97,3 +97,9 @@ def test_keys_typed_ahead_keep_their_order(tmux: Tmux) -> None:
     assert "> open the fridge" in screen
     tmux("send-keys", "C-q")
     tmux.see("code 0")
+
+
+def test_typing_does_not_wait_for_planning(tmp_path: Path) -> None:
+    found = sorted(echoes(tmp_path, 200))
+    assert len(found) == 100  # none was lost
+    assert found[50] <= 100

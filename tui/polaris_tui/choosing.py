@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from polaris_nl.render.glyphs import Glyphs
-from polaris_nl.render.layout import Row, cut, wrapped
+from polaris_nl.render.layout import Row, Tone, cut, wrapped
 from polaris_tui.menus import Ask, Menu, Option
 
 
@@ -65,9 +65,12 @@ class Choosing:
             number = everything.index(option) + 1
             note = option.reason or option.note
             text = f"{number:>2}. {option.text}" + (f"  ({note})" if note else "")
-            text = cut(text, width, glyphs.more)
-            span = (0, len(text)) if place == self.at else None
-            rows.append(Row(text, "faint" if option.reason else "", None, None, span))
+            tone: Tone = "faint" if option.reason else ""
+            if place == self.at:  # in full
+                found = wrapped(text, width, "", "    ", tone)
+                rows += [replace(row, span=(0, len(row.text))) for row in found]
+            else:
+                rows.append(Row(cut(text, width, glyphs.more), tone))
         if not self.options:
             text = "Nothing matches. Enter says it as a sentence; Esc goes back."
             rows.append(Row(text, "faint"))

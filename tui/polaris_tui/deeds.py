@@ -108,13 +108,17 @@ class Deeds(Editing):
             state.choosing = state.choosing.asked(step)
             self._app.ask(step)
             return
-        self.close()
+        before, state.choosing = state.choosing.open, Choosing()
         if isinstance(step, Change):
             self._app.edit(step)
         elif isinstance(step, Perform):
             self.perform(step.action, step.about)
         else:
             state.note(Entry(step.text))
+        if state.choosing.last is not None:  # An action has asked something, below what led to it.
+            state.choosing = Choosing((*before, *state.choosing.open))
+        elif before:
+            self._app.asked_enough()
 
     def close(self) -> None:
         """Closes all menus."""
@@ -153,21 +157,13 @@ class Deeds(Editing):
         """All actions, with their keys, and why some can't be done now."""
         now, keymap = self._app.situation(), self._app.keymap
         skipped = ("up", "down", "left", "right", "top", "bottom", "actions", "open", "prompt")
-        self.follow(
-            Menu(
-                "Actions",
-                tuple(
-                    Option(
-                        f"{a.id}: {a.does}",
-                        Perform(a.id),
-                        keymap.shown(a.id),
-                        a.reason(now),
-                    )
-                    for a in keymap.actions
-                    if a.id not in skipped
-                ),
-            )
-        )
+        offered = [a for a in keymap.actions if a.id not in skipped]
+        offered.sort(key=lambda a: bool(a.reason(now)))  # What can be done comes first.
+        options = [
+            Option(f"{a.id}: {a.does}", Perform(a.id), keymap.shown(a.id), a.reason(now))
+            for a in offered
+        ]
+        self.follow(Menu("Actions", tuple(options)))
 
     def show(self, view: View) -> None:
         """Shows something else in the largest pane; the same again goes back."""

@@ -66,11 +66,12 @@ class Menu:
     about: str = ""
 
     def matching(self, text: str) -> tuple[Option, ...]:
-        """The options that hold all words of a text, or the one of a number."""
+        """The options that hold all words of a text, or the one of a number; those that begin so first."""
         words = text.lower().split()
         found = tuple(
             o for o in self.options if all(w in f"{o.text} {o.note}".lower() for w in words)
         )
+        found = tuple(sorted(found, key=lambda o: not o.text.lower().startswith(text.lower())))
         if len(words) == 1 and words[0].isdecimal():
             number = int(words[0])
             picked = self.options[number - 1 : number] if number else ()

@@ -193,6 +193,7 @@ def expectation_rows(scene: Scene, now: Progress, width: int) -> list[Row]:
     for literal in expected:
         text = cut(scene.wording.fact(literal), left - 2, scene.glyphs.more)
         sign, tone = perceived(scene, now, literal)
+        sign = cut(sign, max(width - left, 4), scene.glyphs.more)
         rows.append(Row(f"{text}{' ' * (left - cells(text))}{sign}", "bad" if tone else ""))
     return rows
 

@@ -41,19 +41,10 @@ def review_rows(scene: Scene, width: int) -> list[Row]:
 
 def _event(reading: Reading, number: int, scene: Scene, width: int) -> list[Row]:
     event = reading.replay.events[number - 1]
-    rows = event_rows(
-        event.time - start(reading),
-        event.severity,
-        text_of(event, scene),
-        scene.glyphs,
-        width,
-        number,
-    )
-    first = rows[0]  # One row an event: what is cut off stands below in full
-    text = (
-        first.text if len(rows) == 1 else cut(first.text + "  " * width, width, scene.glyphs.more)
-    )
-    return [Row(text, first.tone, EVENT, number)]
+    # One row an event; what is cut off stands below in full.
+    seconds, text = event.time - start(reading), text_of(event, scene)
+    (row, *_) = event_rows(seconds, event.severity, text, scene.glyphs, 100_000, number)
+    return [Row(cut(row.text, width, scene.glyphs.more), row.tone, EVENT, number)]
 
 
 def start(reading: Reading) -> float:

@@ -119,6 +119,8 @@ def outline_rows(scene: Scene, width: int, actions: bool) -> list[Row]:
             actions and plan is not None,
         )
 
+    if len(snapshot.automaton.checkpoints) == 1:
+        return [*drawn(None), *_first_steps(scene, width)]
     if snapshot.planning == "planned" or snapshot.plan is None:
         return drawn(snapshot.plan if snapshot.planning == "planned" else None)
     older: dict[str | None, list[Row]] = {}
@@ -130,6 +132,17 @@ def outline_rows(scene: Scene, width: int, actions: bool) -> list[Row]:
     for row in drawn(None):
         rows += older.pop(row.checkpoint, []) if row.checkpoint in kept else [row]
     return rows
+
+
+def _first_steps(scene: Scene, width: int) -> list[Row]:
+    """What to do with an empty program."""
+    keymap = scene.keymap
+    example = next(iter(scene.world.of_type("region")), None)
+    say = f"Such as: go to {scene.wording.entity(example.name)}. " if example else ""
+    keys = f"{keymap.first('next-pane')}, then {keymap.first('add')}: a menu of what can be so"
+    return wrapped(
+        f"{say}Or by keys, {keys}. {keymap.first('help')}: help.", width, "  ", tone="faint"
+    )
 
 
 def still_planned(automaton: Automaton, plan: BranchingPlan) -> set[str]:
