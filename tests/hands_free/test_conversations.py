@@ -36,7 +36,7 @@ TIDYING = (
     "when both are on the drying rack open the cupboard and put them in it",
     "before that go to the hall",
     "no i meant the pantry",
-    "where is the plate",
+    "what will you do",
     "and then go to the lounge",
     "scratch that",
     "run it",
