@@ -36,7 +36,7 @@ TIDYING = (
     "when both are on the drying rack open the cupboard and put them in it",
     "before that go to the hall",
     "no i meant the pantry",
-    "what will you do",
+    "where are you",
     "and then go to the lounge",
     "scratch that",
     "run it",
