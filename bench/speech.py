@@ -16,7 +16,7 @@ from polaris_nl.hands_free.phrases import spoken_phrases
 from polaris_nl.hands_free.weight import weigher
 from polaris_nl.model.world_file import load_world
 from polaris_nl.session import Session
-from polaris_nl.speech.audio import BLOCK, RATE, Converter
+from polaris_nl.speech.audio import BLOCK, RATE, Converter, level
 from polaris_nl.speech.ears import EarMaker, Ears
 from polaris_nl.speech.hearer import Heard, Hearer, Quick
 from polaris_nl.speech.hearing import utterance
@@ -36,6 +36,7 @@ SENTENCES = (
 ROUNDS = 3
 IN_A_ROW = 300
 _BLOCK_S = BLOCK / RATE
+_QUIET_DB = -45.0
 _SILENCE = b"\0\0" * BLOCK
 
 
@@ -65,6 +66,8 @@ def _spoken(text: str) -> list[bytes]:
     converter = Converter(speech.rate)
     sound = b"".join([*converter.push_bytes(speech.samples, 2, 1), *converter.rest()])
     whole = [sound[at : at + BLOCK * 2] for at in range(0, len(sound), BLOCK * 2)]
+    while level(whole[-1]) < _QUIET_DB:  # The pause is counted from the last sound.
+        whole.pop()
     return [*[_SILENCE] * 6, *whole[:-1], whole[-1].ljust(BLOCK * 2, b"\0")]
 
 

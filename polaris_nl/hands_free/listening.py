@@ -102,7 +102,6 @@ class Listening:
         worker = threading.Thread(target=self._work, name="answering", daemon=True)
         worker.start()
         try:
-            self._show()
             for sound in self.source.sound():
                 if isinstance(sound, Trouble):
                     self.face.tells(sound.text)

@@ -45,12 +45,14 @@ class Collected:
 
 
 class Silent:
-    """A voice and a player that take no time; what was said is kept."""
+    """A voice and a player that take no time, or for ever; what was said is kept."""
 
     name = "silent"
 
     def __init__(self) -> None:
         self.said: list[str] = []
+        self.endless = False
+        self.interrupted = 0
 
     def speech(self, text: str) -> Speech:
         return Speech(text.encode(), 16_000)
@@ -58,6 +60,8 @@ class Silent:
     def play(self, speech: Speech, stop: threading.Event) -> None:
         if speech.rate == 16_000:
             self.said.append(speech.samples.decode())
+            if self.endless and stop.wait(60):
+                self.interrupted += 1
 
 
 class Talk:

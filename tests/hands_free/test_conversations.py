@@ -36,7 +36,7 @@ TIDYING = (
     "when both are on the drying rack open the cupboard and put them in it",
     "before that go to the hall",
     "no i meant the pantry",
-    "where is the plate",
+    "where are you",
     "and then go to the lounge",
     "scratch that",
     "run it",
@@ -168,3 +168,36 @@ def test_trouble_with_the_source_is_said_at_once(maker: EarMaker) -> None:
         assert face.told == ["The microphone gives no sound any more."]
         assert talk.voice.said[0] == "The microphone gives no sound any more."
     assert face.heard[0].said.text == "go to the kitchen"
+
+
+class WhileSpeaking(Saying):
+    """Somebody speaks while the program does."""
+
+    def __init__(self, talk: Talk, *sentences: str) -> None:
+        super().__init__(*sentences)
+        self._talk = talk
+
+    def sound(self) -> Iterator[bytes | Trouble]:
+        self._talk.voice.endless = True
+        self._talk.speaker.say("A long story.")
+        while not self._talk.speaker.saying:
+            pass
+        yield from super().sound()
+
+
+def test_with_a_headset_a_voice_silences_the_program_and_is_heard(maker: EarMaker) -> None:
+    with Talk("care-home", maker) as talk:
+        face = talk.hold(
+            WhileSpeaking(talk, "go to the kitchen"), Attention("always", half_duplex=False)
+        )
+        assert talk.voice.interrupted >= 1
+    assert [r.said.text for r in face.heard] == ["go to the kitchen"]
+
+
+def test_without_one_it_hears_only_quick_words_while_it_speaks(maker: EarMaker) -> None:
+    with Talk("care-home", maker) as talk:
+        face = talk.hold(WhileSpeaking(talk, "go to the kitchen", "stop"))
+        assert talk.voice.interrupted == 1
+    assert face.heard == []
+    assert face.told == ["Stopped."]
+    assert face.states[0] == "speaking"
