@@ -4,9 +4,15 @@ VENV := .venv
 BIN := $(VENV)/bin
 LOCK := requirements.lock
 STAMP := $(VENV)/.installed
+ROBOT_LOCK := requirements-robot.lock
+ROBOT := $(VENV)/.robot
+COMPILE := $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes \
+  --no-emit-index-url --no-emit-find-links --no-header --no-annotate --extra voice --extra tui --extra dev
+INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps
+INTERFACES := $(wildcard polaris_nl/execution/ros/interfaces/*/*/*)
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test bench score-language lint format lock clean models
+.PHONY: help demo test robot bench score-language lint format lock clean models
 
 help: ## show this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 12
@@ -14,8 +20,10 @@ help: ## show this list
 demo: $(STAMP) models ## speak, plan, run and review the caregiving program, without a robot
 	@$(BIN)/polaris-nl demo
 
-test: $(STAMP) models lint ## everything that CI checks
+test: $(ROBOT) models lint ## everything that CI checks
 	$(BIN)/python -m pytest
+
+robot: $(ROBOT) ## what `run --robot stretch-sim` needs: ROS 2, its messages, the simulator
 
 bench: $(STAMP) models ## the speed table, beside the plain way
 	@$(BIN)/python -m bench
@@ -38,9 +46,8 @@ models: $(STAMP) ## fetch the speech model, unless it is there
 
 lock: $(STAMP) ## renew the locked versions and hashes
 	$(BIN)/python -m pip install --quiet uv
-	$(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes \
-	  --no-emit-index-url --no-emit-find-links --no-header --no-annotate \
-	  --extra voice --extra tui --extra dev --output-file $(LOCK) pyproject.toml
+	$(COMPILE) --output-file $(LOCK) pyproject.toml
+	$(COMPILE) --extra ros --extra interfaces --extra sim --constraint $(LOCK) --output-file $(ROBOT_LOCK) pyproject.toml
 
 clean: ## remove what was built
 	rm -rf $(VENV) build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis
@@ -50,6 +57,13 @@ clean: ## remove what was built
 $(STAMP): $(LOCK) pyproject.toml scripts/find-python
 	@echo "Making the environment in $(VENV); this takes a minute or two, once."
 	@python=$$(PYTHON="$(PYTHON)" sh scripts/find-python) && "$$python" -m venv --clear $(VENV)
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --use-pep517 --require-hashes -r $(LOCK)
-	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
+	@$(INSTALL) --use-pep517 --require-hashes -r $(LOCK)
+	@$(INSTALL) --no-build-isolation --editable .
+	@touch $@
+
+# ROS 2 and the simulator come on top, where they are wanted: they are several times as big as the rest.
+$(ROBOT): $(STAMP) $(ROBOT_LOCK) scripts/build_interfaces.py $(INTERFACES)
+	@echo "Adding ROS 2 and the simulator to $(VENV); this takes two or three minutes, once."
+	@$(INSTALL) --use-pep517 --require-hashes -r $(ROBOT_LOCK)
+	@$(BIN)/python scripts/build_interfaces.py --again
 	@touch $@

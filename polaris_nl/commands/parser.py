@@ -36,6 +36,7 @@ def make_parser() -> argparse.ArgumentParser:
     _planning(adder)
     _speaking(adder)
     _looking(adder)
+    _simulating(adder)
     return parser
 
 
@@ -158,10 +159,20 @@ def _planning(adder: _Adder) -> None:
     )
     _program(run)
     run.add_argument(
-        "--robot", choices=("world", "stretch-sim", "stretch"), default="world",
-        help="the simulated world (default), a simulated Stretch, or a Stretch",
+        "--robot", metavar="NAME", default="world",
+        help="world: the simulated world (default); stretch-sim: the simulated Stretch; stretch, stretch-3, "
+        "stretch-re2 or a profile file: a Stretch",
     )  # fmt: skip
+    run.add_argument(
+        "--yes",
+        action="store_true",
+        help="the clear yes without which no robot moves; else it is asked for",
+    )
     run.add_argument("--log", metavar="OUT.mcap", type=Path, help="where to write the log")
+    run.add_argument(
+        "--resume", metavar="LOG.mcap", type=Path,
+        help="go on where the run in this log was interrupted; nothing that is done is done again",
+    )  # fmt: skip
     run.add_argument(
         "--people", metavar="ACTION", action="append",
         help="what simulated people prefer to do, by the names in the world file; none: they do nothing",
@@ -262,3 +273,37 @@ def _looking(adder: _Adder) -> None:
         "--program", metavar="F", type=Path,
         help="the program file to make; without it, the program is printed",
     )  # fmt: skip
+
+
+def _simulating(adder: _Adder) -> None:
+    sim = adder.add(
+        "stretch-sim",
+        "start a simulated Stretch, which runs are carried out on over ROS 2",
+        "polaris-nl stretch-sim --world care-home --people dismiss\n"
+        "  polaris-nl stretch-sim --world dinner-party --render run.mp4",
+    )
+    _world(sim, required=True)
+    sim.add_argument(
+        "--render", metavar="OUT", type=Path,
+        help="draw it: a video (.mp4) of all that happens, or a picture (.png) when it is stopped",
+    )  # fmt: skip
+    sim.add_argument(
+        "--people", metavar="ACTION", action="append",
+        help="what people prefer to do, by the names in the world file; none: they do nothing",
+    )  # fmt: skip
+    sim.add_argument("--seed", metavar="N", type=int, default=0, help="makes the same run again")
+    sim.add_argument(
+        "--noise", metavar="M", type=float, default=0.0,
+        help="noise of the cameras, as a standard deviation in metres",
+    )  # fmt: skip
+    sim.add_argument(
+        "--dropout", metavar="P", type=float, default=0.0,
+        help="the share of markers that the cameras miss, from 0 to 1",
+    )  # fmt: skip
+    sim.add_argument(
+        "--speed", metavar="X", type=float, default=1.0,
+        help="how many times as fast as real time it goes",
+    )  # fmt: skip
+    sim.add_argument(
+        "--kinematic", action="store_true", help="without forces, even where MuJoCo is installed"
+    )

@@ -7,6 +7,8 @@ import sys
 import threading
 from argparse import Namespace
 from collections.abc import Callable, Iterable
+from dataclasses import replace
+from functools import partial
 
 from polaris_nl.automaton.automaton import Automaton
 from polaris_nl.commands.common import (
@@ -19,28 +21,31 @@ from polaris_nl.commands.common import (
     width,
 )
 from polaris_nl.execution.events import Event, GoalConfirmed
+from polaris_nl.execution.ros.profile import Profile, profile_for
 from polaris_nl.execution.runner import objectives_met
 from polaris_nl.execution.state import HumanCommand
 from polaris_nl.language.understanding import Understanding
 from polaris_nl.model.errors import RunError, UsageError, did_you_mean
+from polaris_nl.model.text import capital
 from polaris_nl.model.world import World
 from polaris_nl.render.glyphs import glyphs_for
+from polaris_nl.render.layout import wrapped
 from polaris_nl.render.log import event_rows
-from polaris_nl.runs import RunOrder, run_simulated
+from polaris_nl.robot_runs import run_on_robot
+from polaris_nl.runs import RunOrder, resumable, run_simulated
 from polaris_nl.session import Session
 
 NONE = "none"
+WORLD = "world"
 
 
 def run(arguments: Namespace) -> int:
-    """Runs a program in the simulated world; 1 where the run didn't end as it should.
+    """Runs a program in the simulated world or on a robot; 1 where the run didn't end as it should.
 
-    Nothing real moves there, so the command itself is the yes.
+    Nothing moves in the simulated world, so the command itself is the yes there. A robot, simulated
+    ones included, wants one of its own.
     """
-    if arguments.robot != "world":
-        raise RunError(
-            f"The robot {arguments.robot} isn't there yet; use --robot world, the simulated world."
-        )
+    profile = None if arguments.robot == WORLD else profile_for(arguments.robot)
     program, world = opened(arguments)
     people = _people(arguments.people, world)
     with Session(world, program.automaton) as session:
@@ -48,11 +53,15 @@ def run(arguments: Namespace) -> int:
         order = RunOrder(
             program.automaton, plan, session.planner, people, arguments.live, arguments.log
         )
-        commands = (
-            Keyboard(session.understanding, program.automaton).commands if arguments.live else tuple
-        )
-        report = run_simulated(
-            order, confirmed=True, show=shower(arguments.json), commands=commands
+        if arguments.resume is not None:
+            point = resumable(arguments.resume, program.automaton, plan, session.planner)
+            order = replace(order, resume=point)
+        confirmed = profile is None or arguments.yes or agreed(session, profile)
+        listens = arguments.live or (profile is not None and sys.stdin.isatty())
+        commands = Keyboard(session.understanding, program.automaton).commands if listens else tuple
+        carry_out = run_simulated if profile is None else partial(run_on_robot, profile)
+        report = carry_out(
+            order, confirmed=confirmed, show=shower(arguments.json), commands=commands
         )
     result = report.result
     met = objectives_met(world, result.beliefs)
@@ -75,6 +84,23 @@ def run(arguments: Namespace) -> int:
             print_text(f"Objectives: {len(done)} of {len(met)} ({', '.join(done) or 'none'}).")
         print_text(f"The log can be read with: polaris-nl review {shown_path(report.log)}")
     return 0 if result.outcome == "done" and not report.failure else 1
+
+
+def agreed(session: Session, profile: Profile) -> bool:
+    """Whether a person says yes after hearing what a robot will do.
+
+    Raises:
+        RunError: nobody can be asked, or the answer isn't a yes.
+    """
+    for row in wrapped(session.say("run it").say, width()):
+        print(row.text.rstrip(), file=sys.stderr)
+    print(f"{capital(profile.title)} will move. Yes or no? ", end="", file=sys.stderr, flush=True)
+    answer = sys.stdin.readline()
+    if not answer:
+        raise RunError("A robot moves only after a yes, and nobody answers; --yes gives it.")
+    if session.understanding.interpret(answer, session.snapshot.automaton)[0].command != "yes":
+        raise RunError("Nothing was moved, since the answer wasn't a yes.")
+    return True
 
 
 def shower(silent: bool = False) -> Callable[[Event], None]:

@@ -82,13 +82,14 @@ class Planned(Event):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunStarted(Event):
-    """The robot starts to carry a program out, after a yes."""
+    """The robot starts to carry a program out, after a yes; `resumed` is where an earlier run had come to."""
 
     topic: ClassVar[str] = "/polaris/run"
 
     robot: str
     program: dict[str, Any] = field(default_factory=dict)
     beliefs: list[str] = field(default_factory=list)
+    resumed: dict[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -149,6 +150,20 @@ class GoalConfirmed(Event):
     action: str
     seconds: float
     reported: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Skipped(Event):
+    """Actions needn't be done, since what they are for is so already (somebody helped, say).
+
+    `literals` are those of their effects that are perceived.
+    """
+
+    topic: ClassVar[str] = "/polaris/skipped"
+
+    checkpoint: str
+    actions: list[str] = field(default_factory=list)
+    literals: list[str] = field(default_factory=list)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -222,7 +237,10 @@ class Recovered(Event):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Replanned(Event):
-    """The way to the current goal was planned anew from the perceived state."""
+    """The way on was planned anew from the perceived state.
+
+    By the robot on the way to one goal, or by the executor for the rest of a segment (`segment`).
+    """
 
     topic: ClassVar[str] = "/polaris/replanned"
 
@@ -230,6 +248,7 @@ class Replanned(Event):
     before: list[str] = field(default_factory=list)
     after: list[str] = field(default_factory=list)
     reason: str = ""
+    segment: str = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -286,7 +305,7 @@ class Failed(Event):
 
 EVENTS: tuple[type[Event], ...] = (
     Heard, Understood, Edited, Planned, RunStarted, RunEnded, StateChanged, CheckpointReached,
-    GoalSent, GoalConfirmed, RobotReported, Observed, Waiting, TransitionTaken, Deviated, Recovered,
+    GoalSent, GoalConfirmed, Skipped, RobotReported, Observed, Waiting, TransitionTaken, Deviated, Recovered,
     Replanned, Halted, CommandGiven, PersonActed, Said, Failed,
 )  # fmt: skip
 """Every record class; a log has one channel for each that occurs."""

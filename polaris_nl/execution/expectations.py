@@ -52,7 +52,7 @@ def perceived_instead(expected: Sequence[Literal], observation: Observation) -> 
         )
         if not literal.positive and observation.holds(literal.atom):
             found[literal.atom] = None
-        for fact in sorted(observation.state.facts - observation.unknown):
+        for fact in sorted(observation.certain):
             about = (
                 fact.args[-1] if fact.predicate == "has" else (fact.args[0] if fact.args else "")
             )

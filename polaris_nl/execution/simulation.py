@@ -6,7 +6,6 @@ scheduled: it is the test double of the executor as well as the robot of `run --
 
 from __future__ import annotations
 
-import random
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -15,41 +14,23 @@ from polaris_nl.execution.backend import (
     Command,
     Observation,
     Report,
+    RunStop,
     SendGoal,
-    StopRobot,
 )
 from polaris_nl.execution.events import Event, PersonActed
+from polaris_nl.execution.faults import Fault, Troubles
+from polaris_nl.execution.goals import Act, Arrived, GoalLimits, Lost, PlanTo, Pursuit
+from polaris_nl.execution.simulated_people import People
+from polaris_nl.execution.simulated_senses import Senses
 from polaris_nl.model.domain import Action
 from polaris_nl.model.evaluate import after, applicable
 from polaris_nl.model.formula import Literal
 from polaris_nl.model.state import Mutexes, State
 from polaris_nl.model.text import sentence
-from polaris_nl.model.world import HumanAction, World
-from polaris_nl.planning.segments import SegmentResult
+from polaris_nl.model.world import World
 
-PlanTo = Callable[[State, Sequence[Literal]], SegmentResult]
-"""Plans from a state to literals, as the robot does for each of its goals."""
-
-ROBOT_PLAN_LIMIT = 6
-"""Actions that the robot does by itself for one goal: a small perturbation, not another task."""
-
-
-@dataclass(frozen=True, slots=True)
-class Fault:
-    """Something that goes wrong at a time.
-
-    Attributes:
-        at: seconds after the start.
-        kind: `reject`, `never`, `lie`, `fail` (for the goals from then on, `times` of them),
-            `blind` (perception is
-            lost for `seconds`), `ignore-cancel`, or `event` (somebody makes `literals` true).
-    """
-
-    at: float
-    kind: str
-    times: int = 1
-    seconds: float = 0.0
-    literals: tuple[Literal, ...] = ()
+LATE_S = 1.0
+"""Seconds after a failure at which a late success is reported."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,34 +43,53 @@ class SimulationSettings:
         people: names of human actions that people prefer, or None for whatever the world lists
             first.
         seed: makes the same run again.
+        unable: operators that the robot has no skill for.
+        limits: how far the robot goes by itself for one goal.
     """
 
     action_s: Mapping[str, float] = field(default_factory=lambda: {"default": 2.0, "move": 4.0})
     human_s: tuple[float, float] = (1.0, 3.0)
     people: tuple[str, ...] | None = None
     seed: int = 0
+    unable: tuple[str, ...] = ()
+    limits: GoalLimits = field(default_factory=GoalLimits)
+
+    def duration(self, action: Action | None) -> float:
+        """How long an action takes, in seconds."""
+        default = self.action_s.get("default", 1.0)
+        return self.action_s.get(action.operator, default) if action else default
 
 
 @dataclass(slots=True)
 class _Task:
+    """A goal that the robot is at.
+
+    Attributes:
+        action: what it does at present, until `ends_at`.
+        pretended: nothing is done: the goal never ends, or success is only said.
+        says: what is reported at the end of a pretended task; "" for nothing.
+    """
+
     goal: SendGoal
-    actions: list[Action]
-    next_at: float
-    lies: bool = False
-    stuck: bool = False
+    pursuit: Pursuit
+    action: Action | None = None
+    ends_at: float = 0.0
+    pretended: bool = False
+    says: bool = False
 
 
 class SimulatedRobot:
     """A robot in a simulated world.
 
     Args:
-        world: the world, at its start.
+        world: the world.
         mutexes: what displaces what when people act.
         plan: the robot's own planning.
         settings: durations and people.
         faults: what goes wrong.
         sink: is given what people do.
         start: the time of the start, in seconds.
+        state: what is so at the start; the world's own start by default.
     """
 
     name = "world"
@@ -103,173 +103,209 @@ class SimulatedRobot:
         faults: Iterable[Fault] = (),
         sink: Callable[[Event], None] | None = None,
         start: float = 0.0,
+        state: State | None = None,
     ) -> None:
-        self.state = world.initial
+        self.state = state or world.initial
         self._world = world
         self._mutexes = mutexes
         self._plan = plan
-        self._settings = settings or SimulationSettings()
-        self._random = random.Random(self._settings.seed)
-        self._faults = sorted(faults, key=lambda f: f.at)
-        self._active: dict[str, int] = {}
-        self._blind_until = start
-        self._last_seen = world.initial
+        self._settings = how = settings or SimulationSettings()
+        self._people = People(world, how.people, mutexes, how.human_s, how.seed)
+        self._senses = Senses(world, mutexes, start)
+        self._troubles = Troubles(faults, start)
         self._sink = sink or (lambda event: None)
         self._start = self._now = start
         self._task: _Task | None = None
+        self._stopping: float | None = None
+        self._unread: list[Command] = []
         self._reports: list[Report] = []
-        self._people = _willing(world, self._settings.people, mutexes)
-        self._acts_at: dict[str, float] = {}
-        self._acted: set[str] = set()
+        self._late: list[tuple[float, Report]] = []
         self.stopped = False
+        self.run_stopped = False
         self.motions: list[tuple[float, Action]] = []
+        self.moved_at: list[float] = []
 
     # The robot protocol
+
+    def missing(self, actions: Iterable[Action]) -> tuple[str, ...]:
+        """The operators that its world doesn't have, or that it was made without."""
+        able = self._world.domain.operators.keys() - set(self._settings.unable)
+        named = dict.fromkeys(action.operator for action in actions)
+        return tuple(name for name in named if name not in able)
 
     def advance(self, now: float) -> None:
         """Lets time pass: faults strike, the robot moves on, people act."""
         self._now = now
-        while self._faults and self._start + self._faults[0].at <= now:
-            self._strike(self._faults.pop(0))
-        self._work()
-        self._people_act()
+        for fault in self._troubles.strike(now):
+            self._strike(fault)
+        if not self._gone:
+            for command in self._unread:
+                self._obey(command)
+            self._unread.clear()
+            self._work()
+        for action in self._people.acting(lambda: self.state, now):
+            self._make_true(action.effect)
+            text = sentence(f"a simulated person does this: {action.name}")
+            effect = [str(x) for x in action.effect]
+            self._sink(PersonActed(time=now, text=text, action=action.name, effect=effect))
 
     def command(self, command: Command) -> None:
-        """Takes a goal, gives one up, or stops."""
-        if isinstance(command, SendGoal):
-            self._accept(command)
-        elif isinstance(command, CancelGoal):
-            if not self._take_fault("ignore-cancel") and self._task is not None:
-                self._reports.append(Report(command.goal, "cancelled"))
-                self._task = None
-        elif isinstance(command, StopRobot):
-            self._task = None
-            self.stopped = True
+        """Takes a command; a frozen driver reads it when it goes on, a dead one never."""
+        if self._gone:
+            self._unread.append(command)
+        else:
+            self._obey(command)
 
     def observe(self) -> Observation:
-        """What is perceived: everything, unless perception is lost."""
-        if self._now < self._blind_until:
-            return Observation(self._last_seen, self._last_seen.facts)
-        self._last_seen = self.state
-        return Observation(self.state)
+        """What is perceived."""
+        moving = self._moving
+        if moving and (not self.moved_at or self.moved_at[-1] < self._now):
+            self.moved_at.append(self._now)
+        return self._senses.perceive(
+            self.state, self._troubles, self._now, moving, silent=self._gone
+        )
 
     def reports(self) -> Sequence[Report]:
         """The reports since the last call."""
+        if self._gone:
+            return ()
         reports, self._reports = self._reports, []
         return reports
 
     def close(self) -> None:
         """Nothing to let go of."""
 
-    # The robot
+    def suffer(self, fault: Fault) -> None:
+        """Has something go wrong, `fault.at` seconds from now."""
+        delayed = self._now - self._start + fault.at
+        self._troubles.add(Fault(delayed, fault.kind, fault.times, fault.seconds, fault.literals))
+
+    @property
+    def _gone(self) -> bool:
+        return bool(self._troubles.lasting("vanish", "freeze"))
+
+    @property
+    def _moving(self) -> bool:
+        task = self._task
+        return task is not None and (task.action is not None or task.pretended) and not self._gone
+
+    # Commands
+
+    def _obey(self, command: Command) -> None:
+        if isinstance(command, SendGoal):
+            self._accept(command)
+        elif isinstance(command, RunStop):
+            self.run_stopped = self.stopped = True
+            self._give_up("cancelled", "its run-stop was used")
+        elif isinstance(command, CancelGoal):
+            if self._task is not None and not self._troubles.take("ignore-cancel"):
+                self._stop_within(command.goal)
+        else:
+            self.stopped = True
+            if self._task is not None:
+                self._stop_within(self._task.goal.goal)
+
+    def _stop_within(self, goal: int) -> None:
+        if self._troubles.lasting("runaway"):
+            return
+        slow = self._troubles.lasting("slow-stop")
+        if slow:
+            self._stopping = self._stopping or self._now + max(f.seconds for f in slow)
+        else:
+            self._give_up("cancelled", "")
+
+    def _give_up(self, kind: str, reason: str) -> None:
+        if self._task is not None:
+            self._report(self._task.goal.goal, kind, reason)
+        self._task, self._stopping = None, None
 
     def _accept(self, goal: SendGoal) -> None:
-        if self._take_fault("reject"):
-            self._reports.append(Report(goal.goal, "rejected", "it is in the wrong mode"))
+        troubles = self._troubles
+        if troubles.take("mute") or self.run_stopped:
             return
-        self._reports.append(Report(goal.goal, "accepted"))
-        task = _Task(goal, [], self._now)
-        task.stuck = self._take_fault("never")
-        task.lies = self._take_fault("lie")
-        if self._take_fault("fail"):
-            self._reports.append(Report(goal.goal, "failed", "something slipped"))
+        if troubles.take("reject"):
+            self._report(goal.goal, "rejected", "it is in the wrong mode")
             return
-        if not task.stuck and not task.lies:
-            result = self._plan(self.state, goal.literals)
-            if result.status != "solved" or len(result.actions) > ROBOT_PLAN_LIMIT:
-                self._reports.append(Report(goal.goal, "failed", "it found no way"))
-                return
-            task.actions = list(result.actions)
+        self.stopped = False
+        self._report(goal.goal, "accepted")
+        if troubles.take("fail"):
+            self._report(goal.goal, "failed", "something slipped")
+            return
+        if troubles.take("late"):
+            self._report(goal.goal, "failed", "it took too long")
+            self._late.append((self._now + LATE_S, Report(goal.goal, "succeeded")))
+            return
+        task = _Task(goal, Pursuit(goal, self._plan, self._world, self._settings.limits))
+        stuck, lies = troubles.take("never"), troubles.take("lie")
         self._task = task
-        task.next_at = self._now + self._duration(task)
+        if stuck or lies:
+            task.pretended, task.says = True, not stuck
+            task.ends_at = self._now + self._settings.duration(None)
+        else:
+            self._next(task)
 
-    def _duration(self, task: _Task) -> float:
-        times = self._settings.action_s
-        name = task.actions[0].operator if task.actions else "default"
-        return times.get(name, times.get("default", 1.0))
+    # Motion
 
     def _work(self) -> None:
+        while self._late and self._late[0][0] <= self._now:
+            self._reports.append(self._late.pop(0)[1])
         task = self._task
-        if task is None or task.stuck or self._now < task.next_at:
+        if task is None:
             return
-        if task.actions:
-            action = task.actions.pop(0)
-            operator = self._world.domain.operators[action.operator]
-            if not applicable(action, operator, self.state, self._world):
-                self._reports.append(
-                    Report(task.goal.goal, "failed", "the world changed on the way")
-                )
-                self._task = None
-                return
-            self.state = after(action, operator, self.state, self._world)
-            self.motions.append((self._now, action))
-            task.next_at = self._now + self._duration(task)
-        if not task.actions:
-            self._reports.append(Report(task.goal.goal, "succeeded"))
+        if self._stopping is not None and self._now >= self._stopping:
+            self._give_up("cancelled", "")
+        elif self._troubles.lasting("runstopped"):
+            self._give_up("failed", "its run-stop is pressed")
+        elif self._now >= task.ends_at and (task.says or not task.pretended):
+            self._finish(task)
+
+    def _finish(self, task: _Task) -> None:
+        if task.action is None:
+            self._succeed(task)
+            return
+        operator = self._world.domain.operators[task.action.operator]
+        if applicable(task.action, operator, self.state, self._world):
+            self.state = after(task.action, operator, self.state, self._world)
+            self.motions.append((self._now, task.action))
+        self._next(task)
+
+    def _next(self, task: _Task) -> None:
+        """The next action of the robot's own way to its goal, from what is so by now."""
+        found = task.pursuit.next(self.state)
+        if isinstance(found, Lost):
+            self._report(task.goal.goal, "failed", found.reason)
             self._task = None
+        elif isinstance(found, Arrived) and task.action is not None:
+            self._succeed(task)
+        else:
+            if isinstance(found, Act):
+                if found.before is not None:
+                    self._reports.append(
+                        Report(
+                            task.goal.goal,
+                            "replanned",
+                            "the world changed on the way",
+                            found.before,
+                            found.way,
+                        )
+                    )
+                task.action = found.action
+            task.ends_at = self._now + self._settings.duration(task.action)
 
-    # People
+    def _succeed(self, task: _Task) -> None:
+        self._report(task.goal.goal, "succeeded")
+        self._task = None
 
-    def _people_act(self) -> None:
-        for action in self._people:
-            enabled = action.name not in self._acted and all(
-                self.state.holds(x) for x in action.when
-            )
-            if not enabled:
-                self._acts_at.pop(action.name, None)
-                continue
-            shortest, longest = self._settings.human_s
-            at = self._acts_at.setdefault(
-                action.name, self._now + self._random.uniform(shortest, longest)
-            )
-            if self._now >= at:
-                self._acted.add(action.name)
-                self._make_true(action.effect)
-                text = sentence(f"a simulated person does this: {action.name}")
-                effect = [str(x) for x in action.effect]
-                self._sink(
-                    PersonActed(time=self._now, text=text, action=action.name, effect=effect)
-                )
+    def _report(self, goal: int, kind: str, reason: str = "") -> None:
+        self._reports.append(Report(goal, kind, reason))  # type: ignore[arg-type]
 
-    def _make_true(self, literals: Sequence[Literal]) -> None:
-        self.state = self.state.after_event(literals, self._mutexes)
-
-    # Faults
+    # The world
 
     def _strike(self, fault: Fault) -> None:
         if fault.kind == "event":
             self._make_true(fault.literals)
-        elif fault.kind == "blind":
-            self._blind_until = self._now + fault.seconds
-        else:
-            self._active[fault.kind] = self._active.get(fault.kind, 0) + fault.times
+        elif fault.kind == "vanish":
+            self._task = None  # Its motors have a watchdog of their own.
 
-    def _take_fault(self, kind: str) -> bool:
-        left = self._active.get(kind, 0)
-        if left:
-            self._active[kind] = left - 1
-        return left > 0
-
-
-def _willing(
-    world: World, people: tuple[str, ...] | None, mutexes: Mutexes
-) -> tuple[HumanAction, ...]:
-    """The human actions that will be done: preferred ones, and of those that exclude each other the first."""
-    actions = list(world.scenario.human_actions)
-    if people is not None:
-        preferred = [a for a in actions if a.name in people]
-        actions = preferred + [a for a in actions if a.name not in people]
-        if not people:
-            return ()
-    chosen: list[HumanAction] = []
-    for action in actions:
-        rivals = (other for other in chosen if _rivals(action, other, mutexes))
-        if next(rivals, None) is None:
-            chosen.append(action)
-    return tuple(chosen)
-
-
-def _rivals(a: HumanAction, b: HumanAction, mutexes: Mutexes) -> bool:
-    return any(
-        mutexes.exclusive(x, y) for x in a.effect for y in b.effect if x.positive and y.positive
-    )
+    def _make_true(self, literals: Sequence[Literal]) -> None:
+        self.state = self.state.after_event(literals, self._mutexes)

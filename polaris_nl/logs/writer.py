@@ -12,6 +12,7 @@ import json
 import os
 import threading
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
 from typing import IO, Any
@@ -35,6 +36,16 @@ from polaris_nl.model.errors import LogError
 PROFILE = "ros2"
 FORCED: tuple[type[Event], ...] = (Edited, GoalSent, GoalConfirmed, Halted, RunStarted, RunEnded)
 """Events after which the file is forced to the disk, so that even a power cut keeps them."""
+
+
+@dataclass(frozen=True, slots=True)
+class RawKind:
+    """What raw messages are: the type's name and definition, and how both are written."""
+
+    name: str
+    definition: str
+    encoding: str = "ros2msg"
+    message_encoding: str = "cdr"
 
 
 class LogWriter:
@@ -105,6 +116,37 @@ class LogWriter:
             return True
 
     __call__ = write
+
+    def write_raw(self, topic: str, kind: RawKind, time: float, data: bytes) -> bool:
+        """Writes a message that is bytes already, such as one of the robot's own.
+
+        Args:
+            topic: its topic; not one of an event.
+            kind: what the bytes are.
+            time: seconds since the epoch.
+            data: the message.
+
+        Returns:
+            Whether it is in the file, as for `write`.
+        """
+        with self._lock:
+            if self.failure or self._file.closed:
+                return False
+            try:
+                if topic not in self._channels:
+                    schema = self._writer.register_schema(
+                        kind.name, kind.encoding, kind.definition.encode()
+                    )
+                    qos = {"offered_qos_profiles": ""}
+                    self._channels[topic] = self._writer.register_channel(
+                        topic, kind.message_encoding, schema, qos
+                    )
+                self._message(self._channels[topic], max(int(time * 1e9), 0), data)
+                self._flush()
+            except OSError as error:
+                self._fail(error)
+                return False
+            return True
 
     def close(self) -> None:
         """Ends the log and makes the compressed, indexed file of it; the journal stays where that fails."""

@@ -23,7 +23,12 @@ def sentence(text: str) -> str:
     if not text:
         return text
     end = "" if text[-1] in ".!?:" else "."
-    return f"{text[0].upper()}{text[1:]}{end}"
+    return f"{capital(text)}{end}"
+
+
+def capital(text: str) -> str:
+    """A text with its first letter in upper case; the others stay as they are."""
+    return f"{text[:1].upper()}{text[1:]}"
 
 
 def with_article(noun: str) -> str:

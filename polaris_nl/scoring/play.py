@@ -12,7 +12,7 @@ from functools import cached_property
 
 from polaris_nl.automaton.automaton import START, Automaton
 from polaris_nl.execution.expectations import kept_goals, needed_places
-from polaris_nl.execution.simulation import ROBOT_PLAN_LIMIT
+from polaris_nl.execution.goals import GoalLimits
 from polaris_nl.model.domain import Action
 from polaris_nl.model.evaluate import effects
 from polaris_nl.model.formula import Literal
@@ -126,7 +126,7 @@ class Play:
         steps = self._simulator.run(moment.state, (action,))
         if steps is None:
             way = self._way(moment.state, wanted)
-            if way.status == "solved" and len(way.actions) <= ROBOT_PLAN_LIMIT:
+            if way.status == "solved" and len(way.actions) <= GoalLimits().actions:
                 steps = self._simulator.run(moment.state, way.actions)
         if not steps:
             return Next(replace(moment, over=True))  # The robot finds no way, and the run halts.

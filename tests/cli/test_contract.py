@@ -270,7 +270,7 @@ def test_every_command_has_help_with_an_example(command: Command) -> None:
     assert commands is not None
     assert set(commands) == {
         "say", "dialogue", "plan", "why", "score", "run", "transcribe", "listen", "tui", "review", "domains",
-        "worlds", "check", "doctor", "models", "demo", "import", "export",
+        "worlds", "check", "doctor", "models", "demo", "import", "export", "stretch-sim",
     }  # fmt: skip
     for name in commands:
         shown = command(name, "--help")

@@ -76,3 +76,10 @@ def put_away(dinner: Planner) -> Case:
         ("start", "opened", (), ("(open cupboard)",)),
         ("opened", "stowed", (), ("(in cup cupboard)",)),
     )
+
+
+@pytest.fixture(scope="session")
+def contract_cases(lunch: Case, hasty_dishes: Case) -> dict[str, Case]:
+    """The programs of the contract suite's scenarios, by name, with the grammar's words."""
+    tray = case(lunch.planner, ("start", "fetched", (), FULL_TRAY))
+    return {"serve": tray, "lunch": lunch, "hasty": hasty_dishes}

@@ -9,10 +9,12 @@ from typing import TypeVar
 from polaris_nl.automaton.automaton import START, Automaton, Checkpoint, Transition
 from polaris_nl.execution.backend import Command, SendGoal
 from polaris_nl.execution.clock import VirtualClock
-from polaris_nl.execution.events import Event
+from polaris_nl.execution.events import Event, StateChanged
+from polaris_nl.execution.faults import Fault
+from polaris_nl.execution.replanner import InlineReplanner
 from polaris_nl.execution.runner import RunResult, run
 from polaris_nl.execution.settings import RunSettings
-from polaris_nl.execution.simulation import Fault, SimulatedRobot, SimulationSettings
+from polaris_nl.execution.simulation import SimulatedRobot, SimulationSettings
 from polaris_nl.execution.state import HumanCommand, RunPlan
 from polaris_nl.model.formula import Literal, parse_formula
 from polaris_nl.model.world import World
@@ -71,6 +73,10 @@ class Told:
     def of(self, kind: type[E]) -> list[E]:
         return [e for e in self.events if isinstance(e, kind)]
 
+    @property
+    def phases(self) -> list[str]:
+        return [e.after for e in self.of(StateChanged)]
+
     def one(self, kind: type[E]) -> E:
         (found,) = self.of(kind)
         return found
@@ -124,6 +130,7 @@ def carry_out(
     commands: Commands = lambda seconds: (),
     seed: int = 0,
     human_s: tuple[float, float] = (1.0, 3.0),
+    replans: bool = True,
     **settings: float | None,
 ) -> Told:
     """Runs a case in virtual time to its end."""
@@ -138,5 +145,6 @@ def carry_out(
         confirmed=True,
         sink=events.append,
         commands=lambda: commands(clock.now() - T0),
+        replanner=InlineReplanner(case.planner.segment) if replans else None,
     )
     return Told(result, robot, events)

@@ -10,13 +10,18 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from polaris_nl.automaton.program import parse_action
 from polaris_nl.execution.backend import (
+    READY,
     CancelGoal,
     Command,
+    Health,
     Observation,
     Report,
+    RunStop,
     SendGoal,
     StopRobot,
+    ZeroVelocity,
 )
 from polaris_nl.execution.events import (
     CheckpointReached,
@@ -27,21 +32,25 @@ from polaris_nl.execution.events import (
     GoalSent,
     Halted,
     Recovered,
+    Replanned,
     RunEnded,
+    Skipped,
     TransitionTaken,
     Waiting,
 )
-from polaris_nl.execution.executor import (
+from polaris_nl.execution.executor import step
+from polaris_nl.execution.expectations import needed_places
+from polaris_nl.execution.settings import RunSettings
+from polaris_nl.execution.state import (
     TERMINAL,
     ExecutorState,
     HumanCommand,
     Inputs,
+    PlanAnswer,
     RunPlan,
-    step,
 )
-from polaris_nl.execution.expectations import needed_places
-from polaris_nl.execution.settings import RunSettings
-from polaris_nl.model.evaluate import effects
+from polaris_nl.model.domain import Action
+from polaris_nl.model.evaluate import after, applicable, effects
 from polaris_nl.model.formula import Literal
 from polaris_nl.planning.planner import Planner
 from tests.execution.story import FULL_TRAY, Case, case, literal, literals
@@ -78,6 +87,7 @@ class Moment:
         lost: atoms of which nothing is known; None = everything, and `()` = all is seen.
         reports: what the robot says, with the goal's number counted from the present one.
         commands: what people say.
+        moving, health: what is known of the robot itself.
     """
 
     dt: float = 0.1
@@ -86,6 +96,8 @@ class Moment:
     lost: tuple[Literal, ...] | None = ()
     reports: tuple[tuple[int, Any], ...] = ()
     commands: tuple[HumanCommand, ...] = ()
+    moving: bool | None = False
+    health: Health = READY
 
 
 CHANGES = st.sampled_from(
@@ -115,6 +127,17 @@ QUIET = st.builds(
     st.integers(1, 30),
     st.sampled_from([(), (ACKNOWLEDGED,), (DISMISSED,)]),
 )
+GOING_ON = Moment(dt=0.4, obeys=True, change=(ACKNOWLEDGED,), reports=((0, "accepted"),))
+MOVED = st.builds(
+    lambda before, away: [
+        *[GOING_ON] * before,
+        Moment(change=literals("(at tray dining-table)")),
+        *[GOING_ON] * away,
+        Moment(change=literals("(at tray empty-trays)")),
+    ],
+    st.integers(6, 11),
+    st.integers(1, 12),
+)
 UNQUIET = st.builds(
     Moment,
     dt=st.sampled_from([0.0, 0.1, 0.3, 1.0, 4.0, 9.0, 130.0]),
@@ -123,9 +146,14 @@ UNQUIET = st.builds(
     lost=st.one_of(st.just(()), st.just((ACKNOWLEDGED,)), st.none()),
     reports=st.lists(st.tuples(st.sampled_from([0, 0, -1, 1]), KINDS), max_size=2).map(tuple),
     commands=st.one_of(st.just(()), st.lists(COMMANDS, max_size=2).map(tuple)),
+    moving=st.sampled_from([False, False, True, None]),
+    health=st.sampled_from([READY] * 19 + [Health("silent")]),
 )
-HISTORIES = st.lists(st.one_of(QUIET, UNQUIET.map(lambda m: [m])), max_size=14).map(
-    lambda parts: [moment for part in parts for moment in part]
+PARTS = st.lists(st.one_of(QUIET, UNQUIET.map(lambda m: [m])), max_size=14)
+HISTORIES = st.builds(
+    lambda first, parts: [*first, *(moment for part in parts for moment in part)],
+    st.one_of(st.just([]), MOVED),
+    PARTS,
 )
 
 
@@ -148,15 +176,28 @@ class Surroundings:
         if moment.obeys and self.goal is not None:
             self.facts = self.facts.after_event(self.goal.literals, self.planner.mutexes)
         self.facts = self.facts.after_event(moment.change, self.planner.mutexes)
-        lost = self.facts.facts if moment.lost is None else frozenset(moment.lost)
-        observation = Observation(self.facts, lost)
+        everything = frozenset(self.run.world.domain.predicates)
+        observation = Observation(
+            self.facts,
+            frozenset() if moment.lost is None else frozenset(moment.lost),
+            everything if moment.lost is None else frozenset(),
+            health=moment.health,
+            moving=moment.moving,
+        )
         self.seen.append((self.now, observation))
         reports = tuple(Report(self.state.goal + n, kind) for n, kind in moment.reports)
-        inputs = Inputs(observation, reports, moment.commands)
+        inputs = Inputs(observation, reports, moment.commands, self._plans())
         self.state, commands, events = step(self.run, self.state, self.now, inputs)
         for command in commands:
             self.goal = command if isinstance(command, SendGoal) else None
         return inputs, commands, events
+
+    def _plans(self) -> tuple[PlanAnswer, ...]:
+        request = self.state.request
+        if request is None:
+            return ()
+        found = self.planner.segment(request.state, request.goals)
+        return (PlanAnswer(request.number, found.actions if found.status == "solved" else None),)
 
     def perceived_for(self, wanted: tuple[Literal, ...], seconds: float) -> bool:
         """Whether literals have been seen in every observation of the last seconds."""
@@ -184,9 +225,12 @@ class Monitor:
     sent: int = 0
     paused: bool = False
     segment_from: int = 0
-    done: list[str] = field(default_factory=list)
+    plan: list[Action] = field(default_factory=list)
+    done: int = 0
     segment: str = ""
     told: frozenset[Literal] = frozenset()
+    ending: bool = False
+    outcome: str = ""
 
     def check(
         self,
@@ -208,12 +252,15 @@ class Monitor:
                 self._check_reached(event, inputs.observation)
             elif isinstance(event, GoalSent):
                 self._check_sent(event, inputs.observation)
+            elif isinstance(event, Skipped):
+                self._check_skipped(event, inputs.observation)
+            elif isinstance(event, Replanned):
+                self._check_replanned(event, inputs.observation)
         for command in commands:
             if isinstance(command, SendGoal):
                 assert self.active is None, "two goals at once"
                 assert command.goal > self.sent, "a number used twice"
-                assert not self.paused
-                assert not stopped
+                assert not any((self.paused, stopped, self.ending))
                 self.active = self.sent = command.goal
             elif isinstance(command, CancelGoal):
                 assert command.goal == self.sent
@@ -240,14 +287,44 @@ class Monitor:
 
     def _check_confirmed(self, event: GoalConfirmed) -> None:
         run, around = self.around.run, self.around
-        plan = run.plan.segments[self.segment].actions
-        action = plan[len(self.done)]
+        action = self.plan[self.done]
         assert str(action) == event.action, "out of order"
         operator = run.world.domain.operators[action.operator]
         made = effects(action, operator, around.facts, run.world)
         assert around.perceived_for(made, run.settings.confirm_s), "not perceived long enough"
-        self.done.append(event.action)
+        self.done += 1
         self.active = None
+
+    def _check_skipped(self, event: Skipped, observation: Observation) -> None:
+        world = self.around.run.world
+        skipped = self.plan[self.done : self.done + len(event.actions)]
+        assert event.actions == [str(a) for a in skipped]
+        self.done += len(skipped)
+        rest, state = self.plan[self.done :], observation.state
+        if len(skipped) == 1:
+            operator = world.domain.operators[skipped[0].operator]
+            made = effects(skipped[0], operator, state, world)
+            if self.around.perceived_for(made, self.around.run.settings.confirm_s):
+                return
+        for action in rest:
+            operator = world.domain.operators[action.operator]
+            assert applicable(action, operator, state, world), "it was needed after all"
+            state = after(action, operator, state, world)
+        missed = [
+            g for g in self.around.run.plan.segments[self.segment].goals if not state.holds(g)
+        ]
+        since = [o for _, o in self.around.seen[self.segment_from :]]
+        assert all(any(o.holds(g) for o in since) for g in missed), "it was needed after all"
+
+    def _check_replanned(self, event: Replanned, observation: Observation) -> None:
+        assert self.active is None
+        assert event.before == [str(a) for a in self.plan[self.done :]]
+        self.plan = self.plan[: self.done] + [parse_action(a) for a in event.after]
+        state, world = observation.state, self.around.run.world
+        for action in self.plan[self.done :]:
+            operator = world.domain.operators[action.operator]
+            assert applicable(action, operator, state, world)
+            state = after(action, operator, state, world)
 
     def _check_transition(self, event: TransitionTaken, inputs: Inputs) -> None:
         told = self.told
@@ -260,24 +337,29 @@ class Monitor:
                 # Known to be false; what is unknown just now is not.
                 assert any(see(x.negation) and x not in told for x in rival.when)
         assert self.segment == ""
-        self.segment, self.done = taken.target, []
+        self.segment, self.done = taken.target, 0
+        self.plan = list(self.around.run.plan.segments[taken.target].actions)
         self.segment_from = len(self.around.seen) - 1
         self.told = frozenset()
 
     def _check_reached(self, event: CheckpointReached, observation: Observation) -> None:
         segment = self.around.run.plan.segments[event.checkpoint]
         assert event.checkpoint == self.segment
-        assert self.done == [str(a) for a in segment.actions]
+        assert self.done == len(self.plan)
         since = [o for _, o in self.around.seen[self.segment_from :]]
         for goal in segment.goals:
             assert any(o.holds(goal) for o in since), f"{goal} was never perceived"
-            if segment.before.holds(goal):
-                assert observation.holds(goal), f"{goal} held before, and doesn't now"
+            if not any(goal in self._made(action) for action in self.plan):
+                assert observation.holds(goal), f"{goal} isn't brought about, and doesn't hold now"
         self.segment = ""
 
+    def _made(self, action: Action) -> tuple[Literal, ...]:
+        world = self.around.run.world
+        operator = world.domain.operators[action.operator]
+        return effects(action, operator, world.initial, world)
+
     def _check_sent(self, event: GoalSent, observation: Observation) -> None:
-        run = self.around.run
-        action = run.plan.segments[self.segment].actions[len(self.done)]
+        run, action = self.around.run, self.plan[self.done]
         assert str(action) == event.action
         needed = needed_places(action, run.world.domain.operators[action.operator])
         assert all(map(observation.holds, needed))
@@ -288,11 +370,18 @@ class Monitor:
         phase = self.around.state.phase
         ends = [e for e in events if isinstance(e, RunEnded)]
         assert len(ends) == (phase in TERMINAL)
-        if stopped:
-            assert phase == "halted"
+        halts = any(isinstance(e, Halted) for e in events)
+        if stopped or halts:
+            assert phase == "halting" or self.ending
+        if phase == "halting" and not self.ending:
+            # What was asked of the robot is withdrawn in the very step in which the end is decided.
+            assert commands[-2:] == (ZeroVelocity(), StopRobot())
+            self.ending, self.outcome = True, "halted" if halts else "stopped"
+        elif self.ending:
+            assert not halts
+            assert all(isinstance(c, ZeroVelocity | RunStop) for c in commands)
         if phase == "halted":
-            assert isinstance(commands[-1], StopRobot)
-            assert (ends[0].outcome == "halted") == any(isinstance(e, Halted) for e in events)
+            assert ends[0].outcome == self.outcome
         if phase in TERMINAL:
             assert self.active is None
 
@@ -315,8 +404,20 @@ def test_the_rules_hold_whatever_happens(programs: dict[str, Case], name: str) -
 
     hold()
     # The histories lead into every corner.
-    kinds = (GoalConfirmed, CheckpointReached, TransitionTaken, Deviated, Recovered, Halted)
-    corners = {k.__name__ for k in (*kinds, CommandGiven)} | {"done", "halted", "stopped"}
+    kinds = (
+        GoalConfirmed,
+        CheckpointReached,
+        TransitionTaken,
+        Deviated,
+        Recovered,
+        Halted,
+        Skipped,
+    )
+    corners = {k.__name__ for k in (*kinds, CommandGiven, Replanned)} | {
+        "done",
+        "halted",
+        "stopped",
+    }
     corners |= {Waiting.__name__} if name == "labelled" else set()
     assert corners <= set(met)
 
@@ -461,7 +562,7 @@ def test_a_goal_that_flickers_for_ever_runs_into_the_limit(programs: dict[str, C
         around.pass_by(Moment(change=(come_and_gone,), reports=((0, "accepted"),)))
         if around.state.phase in TERMINAL:
             break
-    assert around.state.phase == "halted"
+    assert around.state.outcome == "halted"
     assert around.now == pytest.approx(20.0, abs=1.0)
 
 
@@ -488,5 +589,5 @@ def test_a_robot_that_never_answers_halts_the_run(programs: dict[str, Case]) -> 
     around.pass_by(Moment())
     assert around.pass_by(Moment(dt=2.0))[1] == ()
     _, commands, events = around.pass_by(Moment(dt=0.1))
-    assert commands == (CancelGoal(1), StopRobot())
+    assert commands == (CancelGoal(1), ZeroVelocity(), StopRobot())
     assert any(isinstance(e, Halted) for e in events)

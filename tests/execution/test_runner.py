@@ -23,8 +23,8 @@ from polaris_nl.execution.events import (
     RunStarted,
     StateChanged,
 )
+from polaris_nl.execution.faults import Fault
 from polaris_nl.execution.runner import run
-from polaris_nl.execution.simulation import Fault
 from polaris_nl.execution.state import HumanCommand
 from polaris_nl.logs.review import story
 from polaris_nl.model.errors import RunError

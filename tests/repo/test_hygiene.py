@@ -41,6 +41,7 @@ def test_the_core_imports_and_works_without_screen_robot_or_sound() -> None:
         ".".join(p.relative_to(ROOT).with_suffix("").parts)
         for package in CORE
         for p in (ROOT / "polaris_nl" / package).rglob("*.py")
+        if p.relative_to(ROOT / "polaris_nl").parts[:3] != ("execution", "ros", "stretch_sim")
     ]
     script = f"""
 import importlib
@@ -118,6 +119,25 @@ def test_the_lock_has_hashes_and_no_addresses_and_fits_the_project() -> None:
     for requirement in (*project["dependencies"], *extras["voice"], *extras["tui"], *extras["dev"]):
         name = re.split(r"[<>=\[ ]", requirement)[0].lower()
         assert name in locked, name
+
+
+def test_the_robot_lock_adds_to_the_lock_and_agrees_with_it() -> None:
+    def locked(text: str) -> dict[str, set[str]]:
+        found: dict[str, set[str]] = {}
+        for name, version in re.findall(r"^([a-z0-9._-]+)==(\S+)", text, re.MULTILINE):
+            found.setdefault(name, set()).add(version)
+        return found
+
+    text = (ROOT / "requirements-robot.lock").read_text()
+    assert "://" not in text
+    robot, base = locked(text), locked((ROOT / "requirements.lock").read_text())
+    assert text.count("--hash=sha256:") >= len(robot) > len(base)
+    assert {name: robot.get(name) for name in base} == base
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    extras = project["optional-dependencies"]
+    for requirement in (*extras["ros"], *extras["interfaces"], *extras["sim"]):
+        name = re.split(r"[<>=\[ ]", requirement)[0].lower().replace("_", "-")
+        assert name in robot, name
 
 
 def test_no_file_names_a_machine_or_a_registry() -> None:
