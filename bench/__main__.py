@@ -7,7 +7,7 @@ import os
 import platform
 import sys
 
-from bench import command, language, planning, speech, tui
+from bench import command, execution, language, planning, speech, tui
 from bench.table import show
 
 PARTS = {
@@ -15,6 +15,7 @@ PARTS = {
     "language": language,
     "speech": speech,
     "planning": planning,
+    "execution": execution,
     "tui": tui,
 }
 

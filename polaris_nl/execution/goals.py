@@ -32,7 +32,7 @@ class GoalLimits:
 
     Attributes:
         actions: the most actions of one way.
-        plans: how often the way may be planned, the first time included.
+        plans: how often the way may be planned.
         plan_s: how long planning may take each time, in seconds.
     """
 
@@ -59,7 +59,8 @@ class Act:
 
     Attributes:
         way: all that is left of the way, this action first.
-        before: what was left of the old way, where the way was planned anew; else None.
+        before: what was left of the old way (at first, the action itself), where the way was planned
+            anew; else None.
     """
 
     way: tuple[Action, ...]
@@ -92,7 +93,8 @@ class Pursuit:
         operator = world.domain.operators[goal.action.operator]
         self._places = needed_places(goal.action, operator)
         self._simulator = Simulator(world)
-        self._way: tuple[Action, ...] | None = None
+        # Mostly the action itself can be done, and then there is nothing to plan.
+        self._way: tuple[Action, ...] = (goal.action,)
         self._planned = 0
 
     def next(self, state: State) -> Act | Arrived | Lost:
@@ -110,11 +112,10 @@ class Pursuit:
         if not all(map(state.holds, self._places)):
             return Lost("something isn't in its place any more")
         before = self._way
-        if before is not None:
-            at = shortcut(self._simulator, state, before, self.goal.literals)
-            if at is not None:
-                self._way = before[at:]
-                return Act(self._way)
+        at = shortcut(self._simulator, state, before, self.goal.literals)
+        if at is not None:
+            self._way = before[at:]
+            return Act(self._way)
         found = self._planned_anew(state)
         if isinstance(found, Lost):
             return found

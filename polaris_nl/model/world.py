@@ -103,9 +103,20 @@ class World:
 
     def of_type(self, *types: str) -> Iterator[Entity]:
         """The entities of any of some types, in file order; of all types where none is named."""
-        for entity in self.entities.values():
-            if not types or any(self.domain.is_a(entity.type, wanted) for wanted in types):
-                yield entity
+        found = self._by_types.get(types)
+        if found is None:
+            # Quantifiers ask for the same few again and again.
+            found = self._by_types[types] = tuple(
+                entity
+                for entity in self.entities.values()
+                if not types or any(self.domain.is_a(entity.type, wanted) for wanted in types)
+            )
+        return iter(found)
+
+    @cached_property
+    def _by_types(self) -> dict[tuple[str, ...], tuple[Entity, ...]]:
+        """What has been asked for before."""
+        return {}
 
     @cached_property
     def kinds(self) -> Mapping[str, frozenset[str]]:

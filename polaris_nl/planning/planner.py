@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from polaris_nl.automaton.automaton import Automaton
-from polaris_nl.model.formula import Formula
+from polaris_nl.model.formula import Formula, Literal
 from polaris_nl.model.state import Mutexes, State
 from polaris_nl.model.wording import PlainWording, Wording
 from polaris_nl.model.world import World
@@ -33,6 +33,10 @@ class Planner:
         self.world = world
         self.wording: Wording = wording or PlainWording(world)
         self.mutexes: Mutexes = find_mutexes(world)
+        # What the domain only declares is not relied on.
+        self._found = Mutexes(
+            tuple(g for g in self.mutexes.groups if g not in world.domain.mutexes)
+        )
         self._segments = Segments(world, self.mutexes)
         self._compiler = Compiler(world, self.mutexes, self._segments, self.wording)
         self._edited = Automaton()
@@ -74,5 +78,18 @@ class Planner:
     def segment(
         self, state: State, goals: Sequence[Formula], budget_s: float = BUDGET_S
     ) -> SegmentResult:
-        """A plan from a state to goals, as the robot needs it for one goal."""
-        return self._segments.solve(state, goals, budget_s)
+        """A plan from a state to goals, as the robot needs it for one goal, or for what is left of a segment.
+
+        An action's effects say much twice (it holds the tray; the tray isn't where it was; the hand
+        isn't empty), and what is said in the negative makes everything matter that could be so
+        instead. So what follows from the rest is left out.
+        """
+        positive = [g for g in goals if isinstance(g, Literal) and g.positive]
+        needed = [
+            g
+            for g in goals
+            if not isinstance(g, Literal)
+            or g.positive
+            or all(self._found.exclusive(g.atom, p) is None for p in positive)
+        ]
+        return self._segments.solve(state, needed, budget_s)
