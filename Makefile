@@ -10,9 +10,10 @@ COMPILE := $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --gen
   --no-emit-index-url --no-emit-find-links --no-header --no-annotate --extra voice --extra tui --extra dev
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps
 INTERFACES := $(wildcard polaris_nl/execution/ros/interfaces/*/*/*)
+VOICES := .venv-voices
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test robot bench score-language lint format lock clean models
+.PHONY: help demo test robot bench score-language score-speech lint format lock clean models
 
 help: ## show this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 12
@@ -30,6 +31,16 @@ bench: $(STAMP) models ## the speed table, beside the plain way
 
 score-language: $(STAMP) ## how much of what people say is understood, where the corpora are there
 	@$(BIN)/python -m bench.score_language
+
+score-speech: $(STAMP) models $(VOICES)/.installed ## how well speech is understood, on a set that synthetic voices speak here
+	@scripts/install-system voices
+	@$(VOICES)/bin/python scripts/make_speech_set.py
+	@$(BIN)/python -m bench.score_speech
+
+$(VOICES)/.installed: scripts/voices.txt scripts/find-python
+	@python=$$(PYTHON="$(PYTHON)" sh scripts/find-python) && "$$python" -m venv --clear $(VOICES)
+	@$(VOICES)/bin/python -m pip install --quiet --disable-pip-version-check -r $<
+	@touch $@
 
 lint: $(STAMP) ## style, types and import rules
 	$(BIN)/ruff check .
@@ -50,7 +61,7 @@ lock: $(STAMP) ## renew the locked versions and hashes
 	$(COMPILE) --extra ros --extra interfaces --extra sim --constraint $(LOCK) --output-file $(ROBOT_LOCK) pyproject.toml
 
 clean: ## remove what was built
-	rm -rf $(VENV) build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf $(VENV) $(VOICES) build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # One environment serves demo, test and bench. It is made again when the lock or the project file changes.

@@ -116,16 +116,23 @@ class Session:
         """
         return self._publisher.subscribe(subscriber)
 
-    def say(self, utterance: str, wait_s: float = PLAN_WAIT_S, source: str = "typed") -> Answer:
+    def say(
+        self,
+        utterance: str,
+        wait_s: float = PLAN_WAIT_S,
+        source: str = "typed",
+        heard: Heard | None = None,
+    ) -> Answer:
         """Interprets an utterance, carries it out, and answers.
 
         Args:
             utterance: what the user said or typed.
             wait_s: how long to wait for the plan, in seconds; 0 answers with the plan pending.
             source: where it came from, for the log: `typed`, `voice`, a recording's name.
+            heard: how it was heard, for the log, where it was spoken.
         """
         started = time.perf_counter()
-        self._sink(Heard(time=self._now(), utterance=utterance, source=source))
+        self._sink(heard or Heard(time=self._now(), utterance=utterance, source=source))
         interpretation, dialogue = self._interpret(utterance)
         self._dialogue = dialogue
         failure, confirmed = "", False
@@ -149,11 +156,14 @@ class Session:
         self._report_understood(answer)
         return answer
 
-    def parses(self, utterance: str) -> bool:
-        """Whether an utterance would be understood now: anything but a refusal. Changes nothing."""
-        return self.understanding.parses(
-            utterance, self._publisher.snapshot.automaton, self._dialogue
-        )
+    def understood(self, utterance: str) -> Interpretation:
+        """What an utterance would be taken to mean now. Changes nothing."""
+        return self._interpret(utterance)[0]
+
+    @property
+    def awaits_yes(self) -> bool:
+        """Whether a yes would start a run: what will happen was read out last."""
+        return self._run_echoed
 
     def begin_again(self, automaton: Automaton) -> None:
         """Goes back to a program, as if nothing had been said: for utterances that are independent."""
@@ -187,6 +197,10 @@ class Session:
             self._publisher.snapshot.revision, self._publisher.snapshot.automaton
         )
         return self._publisher.wait(lambda snapshot: snapshot.planning != "planning", seconds)
+
+    def report_to(self, sink: Callable[[Event], None]) -> None:
+        """Reports everything that happens from now on to another sink."""
+        self._sink = sink
 
     def warm_up(self) -> None:
         """Loads language and planner, so that the first sentence is answered as quickly as the second."""

@@ -13,7 +13,7 @@ from polaris_nl.commands import plan as plan_command
 from polaris_nl.commands.common import print_json, print_rows, print_text, shown_path, width
 from polaris_nl.commands.review import run_lines
 from polaris_nl.commands.run import shower
-from polaris_nl.commands.transcribe import Ear
+from polaris_nl.commands.transcribe import ears_for, hear_file
 from polaris_nl.execution.events import Event
 from polaris_nl.logs.paths import log_folder, new_log_path
 from polaris_nl.logs.reader import read_log
@@ -26,8 +26,7 @@ from polaris_nl.render.program import program_rows
 from polaris_nl.runs import RunOrder, RunReport, run_simulated
 from polaris_nl.session import Session
 from polaris_nl.speech.audio import file_blocks
-from polaris_nl.speech.models import model_folder
-from polaris_nl.speech.recogniser import VoskModel
+from polaris_nl.speech.ears import EarMaker
 
 WORLD = "care-home"
 RECORDING = "caregiving/recordings/lunch.flac"
@@ -49,10 +48,10 @@ class _Demo:
     def run(self) -> int:
         events: list[Event] = []
         self._step("Loading the care home, its language and the speech model")
-        model = VoskModel(model_folder())
+        maker = EarMaker()
         with Session(load_world(WORLD), sink=events.append) as session:
             session.warm_up()
-            said = self._hear(session, model)
+            said = self._hear(session, maker)
             plan = session.wait().plan
             if said != "applied" or plan is None or plan.status != "ok":
                 raise RunError(
@@ -95,11 +94,11 @@ class _Demo:
         dash = glyphs_for(stream).dash
         print(f"{lead}{dash * 2} {self._steps}. {title}", file=stream, flush=True)
 
-    def _hear(self, session: Session, model: VoskModel) -> str:
+    def _hear(self, session: Session, maker: EarMaker) -> str:
         recording = data_folder("domains") / RECORDING
         seconds = sum(map(len, file_blocks(recording))) / 32_000
         self._step(f"Hearing {recording.name}, {seconds:.0f} s of speech")
-        said, answer = Ear(session, model).file(recording)
+        said, answer = hear_file(recording, ears_for(session, maker), session)
         if not self._json:
             print_text(f'"{said.text}"')
             self._step("What was understood")

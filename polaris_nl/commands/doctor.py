@@ -98,7 +98,7 @@ def _model() -> Finding:
 
 
 def _microphone() -> Finding:
-    from polaris_nl.speech.audio import microphones
+    from polaris_nl.speech.microphone import microphones
 
     if importlib.util.find_spec("sounddevice") is None:
         return Finding("microphone", False, "can't be looked for without sounddevice.")

@@ -2,49 +2,213 @@
 
 from __future__ import annotations
 
+import sys
+import threading
+import time
 from argparse import Namespace
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
 
+from polaris_nl.automaton.program import program_json
 from polaris_nl.commands.common import complain, print_json, print_text, session_of
-from polaris_nl.commands.transcribe import not_meant
+from polaris_nl.execution.events import Event
+from polaris_nl.hands_free.conversation import Conversation, Reply
+from polaris_nl.hands_free.listening import Listening
+from polaris_nl.hands_free.phrases import spoken_phrases
+from polaris_nl.hands_free.recording import AudioKeeper
+from polaris_nl.hands_free.running import Runs
+from polaris_nl.logs.writer import LogWriter, attachments_of
+from polaris_nl.model.errors import SpeechError
+from polaris_nl.session import Session
 from polaris_nl.snapshot import answer_json
-from polaris_nl.speech.audio import source_blocks
-from polaris_nl.speech.hearing import utterance
-from polaris_nl.speech.models import model_folder
-from polaris_nl.speech.recogniser import VoskModel, VoskRecogniser
+from polaris_nl.speech.audio import level
+from polaris_nl.speech.ears import EarMaker, gaps_in_words
+from polaris_nl.speech.microphone import microphones
+from polaris_nl.speech.modes import Attention, State
+from polaris_nl.speech.sources import Source, Trouble, source_for
+from polaris_nl.speech.speaker import SoundPlayer, Speaker
+from polaris_nl.speech.voices import find_voice
+from polaris_nl.speech.wake import MicroWakeWord
+
+LEVEL_S = 3.0
+_TOO_QUIET, _TOO_LOUD = -50.0, -6.0
+_STATES: dict[State, str] = {
+    "listening": "Listening.", "waiting": "Waiting to be called.", "asleep": "Asleep.", "speaking": "",
+}  # fmt: skip
 
 
 def run(arguments: Namespace) -> int:
     """Answers each sentence as soon as it has ended, until sound or user do; 1 where a save failed."""
-    code = 0
-    blocks = source_blocks(arguments.mic)
-    model = VoskModel(model_folder())
+    if arguments.microphones:
+        return _list(arguments.json)
+    source = source_for(arguments.mic, arguments.allow_remote)
+    if arguments.level:
+        return _level(source, arguments.json)
+    maker = EarMaker()
+    with _parts(arguments) as (session, log):
+        ears = maker.ears(spoken_phrases(session.understanding))
+        face = _Face(session, arguments.json)
+        names = (n for e in session.world.entities.values() for n in (e.spoken, *e.synonyms))
+        for text in gaps_in_words(ears.alikes, names):
+            complain(text)
+
+        def sink(event: Event) -> None:
+            if log is not None:
+                log.write(event)
+
+        conversation = Conversation(session, sink, arguments.aloud)
+        speaker = _speaker(arguments)
+        listening = Listening(
+            source, ears, conversation, face,
+            Attention(arguments.mode, half_duplex=not arguments.headset), speaker,
+            MicroWakeWord() if arguments.mode == "wake" else None,
+            AudioKeeper(log).keep if log is not None and arguments.record else None,
+        )  # fmt: skip
+        runs = Runs(conversation, sink, lambda text: _tell(face, speaker, text))
+        listening.started = runs.start
+        if speaker is not None:
+            speaker.changed = listening.spoke
+        if arguments.mode == "talk" and sys.stdin.isatty():
+            threading.Thread(target=_keys, args=(listening,), name="keys", daemon=True).start()
+        face.begins(arguments.mode, listening)
+        try:
+            listening.run()
+        finally:
+            runs.close()
+            if speaker is not None:
+                speaker.close()
+    return face.code
+
+
+class _Face:
+    """Prints what is heard and answered."""
+
+    def __init__(self, session: Session, as_json: bool) -> None:
+        self._session = session
+        self._json = as_json
+        self.code = 0
+
+    def begins(self, mode: str, listening: Listening) -> None:
+        """Says how to be heard."""
+        if self._json:
+            return
+        how = {"talk": "Press Enter, then say", "always": "Say"}.get(mode, "")
+        if listening.wake_word is not None:
+            how = f'Say "{listening.wake_word.word}", then'
+        print_text(f'{how} what the robot should achieve; "help" tells more, "quit" ends.')
+
+    def shows(self, state: State) -> None:
+        """Whether it listens now."""
+        if not self._json and _STATES[state]:
+            print_text(_STATES[state], "-- ")
+
+    def tells(self, text: str) -> None:
+        """A sentence about the microphone, the mode or the run."""
+        if self._json:
+            print_json({"tells": text})
+        else:
+            print_text(text)
+
+    def replies(self, reply: Reply) -> None:
+        """What was heard, and what came of it."""
+        if self._json:
+            self._print(reply)
+        elif reply.text:
+            print_text(reply.said.text, "You: ")
+            print_text(reply.text)
+        if reply.answer is not None and reply.answer.failure:
+            complain(reply.answer.failure)
+            self.code = 1
+
+    def _print(self, reply: Reply) -> None:
+        said = reply.said
+        heard = {
+            "heard": said.text, "accepted": said.accepted, "audio_s": round(said.audio_s, 2),
+        }  # fmt: skip
+        if reply.answer is not None:
+            print_json({**answer_json(reply.answer, self._session.program), **heard})
+        else:
+            outcome = "command" if said.accepted else "refused"
+            print_json({"utterance": said.text, "outcome": outcome, "say": reply.text, **heard})
+
+
+@contextmanager
+def _parts(arguments: Namespace) -> Iterator[tuple[Session, LogWriter | None]]:
+    """The session, and the log where one is asked for."""
     with session_of(arguments) as session:
-        recogniser = VoskRecogniser(model, session.understanding.phrases())
-        free = VoskRecogniser(model)
-        if not arguments.json:
-            print_text(
-                'Listening. Say what the robot should achieve; "help" tells more, "quit" ends.'
-            )
-        for piece in recogniser.hear(blocks):
-            said = utterance([piece], session.parses, free.words)
-            answer = (
-                session.say(said.text, source="voice")
-                if said.accepted
-                else not_meant(session, said)
-            )
-            if arguments.json:
-                heard = {
-                    "heard": said.text,
-                    "accepted": said.accepted,
-                    "audio_s": round(said.audio_s, 2),
-                }
-                print_json({**answer_json(answer, session.program), **heard})
-            else:
-                print_text(said.text, "You: ")
-                print_text(answer.say)
-            if answer.failure:
-                complain(answer.failure)
-                code = 1
-            if answer.interpretation.command == "quit":
-                break
-    return code
+        path: Path | None = arguments.log
+        if path is None:
+            if arguments.record:
+                raise SpeechError(
+                    "--record keeps the sound in a log; name one with --log OUT.mcap."
+                )
+            yield session, None
+            return
+        world = session.world
+        attachments = attachments_of(
+            program_json(session.program), world.domain.source, world.source
+        )
+        with LogWriter(path, attachments) as log:
+            session.report_to(lambda event: _ignore(log.write(event)))
+            yield session, log
+            session.wait()
+        if log.failure:
+            complain(log.failure)
+
+
+def _ignore(kept: bool) -> None:
+    """A log says itself what it could not keep."""
+
+
+def _speaker(arguments: Namespace) -> Speaker | None:
+    if not arguments.aloud:
+        return None
+    return Speaker(find_voice(), SoundPlayer())
+
+
+def _tell(face: _Face, speaker: Speaker | None, text: str) -> None:
+    face.tells(text)
+    if speaker is not None:
+        speaker.say(text, "run")
+
+
+def _keys(listening: Listening) -> None:
+    for _ in sys.stdin:
+        listening.key()
+
+
+def _list(as_json: bool) -> int:
+    found = microphones()
+    if as_json:
+        print_json({"microphones": found})
+    else:
+        for number, name in enumerate(found):
+            print_text(f"{number}: {name}")
+        if not found:
+            complain("There is no microphone here. A recording can be given: --mic FILE.wav")
+    return 0 if found else 1
+
+
+def _level(source: Source, as_json: bool) -> int:
+    """Measures the sound for some seconds while the user speaks, and says whether it will do."""
+    loudest, until = -90.0, time.monotonic() + LEVEL_S
+    if not as_json:
+        print_text(f"Speak for {LEVEL_S:.0f} seconds.")
+    for sound in source.sound():
+        if isinstance(sound, Trouble):
+            complain(sound.text)
+        else:
+            loudest = max(loudest, level(sound))
+        if source.live and time.monotonic() > until:
+            break
+    verdict = "is good"
+    if loudest < _TOO_QUIET:
+        verdict = "is too quiet: move closer, or choose another microphone with --mic"
+    elif loudest > _TOO_LOUD:
+        verdict = "is too loud: turn the microphone down"
+    if as_json:
+        print_json({"source": source.name, "level": round(loudest, 1), "verdict": verdict})
+    else:
+        print_text(f"{source.name}: {loudest:.0f} dB, which {verdict}.")
+    return 0 if verdict == "is good" else 1

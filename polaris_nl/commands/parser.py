@@ -190,7 +190,11 @@ def _speaking(adder: _Adder) -> None:
         "polaris-nl transcribe --world care-home order.wav",
     )
     transcribe.add_argument(
-        "files", metavar="FILE", nargs="+", type=Path, help="a WAV or FLAC recording"
+        "files",
+        metavar="FILE",
+        nargs="+",
+        type=Path,
+        help="a WAV or FLAC recording, or a log with sound (listen --record)",
     )
     _program_option(transcribe)
     _world(transcribe)
@@ -203,13 +207,34 @@ def _speaking(adder: _Adder) -> None:
     listen = adder.add(
         "listen",
         "author hands-free, by voice",
-        "polaris-nl listen --world care-home --mic order.wav",
+        "polaris-nl listen --world care-home --aloud\n"
+        "  polaris-nl listen --world care-home --mic order.wav\n"
+        "  polaris-nl listen --world care-home --mic tcp://127.0.0.1:10700 --mode wake",
     )
     _program_option(listen)
     _world(listen)
     listen.add_argument(
-        "--mic", metavar="NAME|FILE", help="a microphone's name or number, or a recording"
+        "--mic", metavar="NAME|FILE|tcp://HOST:PORT",
+        help="a microphone's name or number, a recording, a named pipe, or a Wyoming microphone",
+    )  # fmt: skip
+    listen.add_argument(
+        "--mode", choices=("always", "wake", "talk"), default="always",
+        help="listen always (default), after the words \"hey jarvis\", or after Enter",
+    )  # fmt: skip
+    listen.add_argument("--aloud", action="store_true", help="speak the answers, too")
+    listen.add_argument(
+        "--headset", action="store_true", help="listen while speaking: it can't hear itself"
     )
+    listen.add_argument("--log", metavar="OUT.mcap", type=Path, help="keep what happens in a log")
+    listen.add_argument(
+        "--record", action="store_true", help="keep the sound of it in the log, too"
+    )
+    listen.add_argument(
+        "--allow-remote", action="store_true",
+        help="let a microphone be on another machine without a tunnel",
+    )  # fmt: skip
+    listen.add_argument("--microphones", action="store_true", help="list the microphones")
+    listen.add_argument("--level", action="store_true", help="measure how loud the microphone is")
     models = adder.add("models", "fetch the speech model", "polaris-nl models")
     models.add_argument("--force", action="store_true", help="fetch it even if it is there")
 

@@ -24,6 +24,7 @@ from polaris_nl.execution.events import Event, GoalConfirmed
 from polaris_nl.execution.ros.profile import Profile, profile_for
 from polaris_nl.execution.runner import objectives_met
 from polaris_nl.execution.state import HumanCommand
+from polaris_nl.hands_free.running import command_in as command_in
 from polaris_nl.language.understanding import Understanding
 from polaris_nl.model.errors import RunError, UsageError, did_you_mean
 from polaris_nl.model.text import capital
@@ -160,26 +161,3 @@ class Keyboard:
                 "Say stop, pause, resume, or what has happened, such as: the resident acknowledges."
             )
         return command
-
-
-def command_in(
-    line: str, understanding: Understanding, automaton: Automaton
-) -> HumanCommand | None:
-    """What a line typed during a run commands: stop, pause, resume, or a fact that has come true.
-
-    Args:
-        line: what was typed.
-        understanding: the language side.
-        automaton: the program that runs; what it is about is what facts are about.
-    """
-    meant, _ = understanding.interpret(line, automaton)
-    if meant.command in ("stop", "quit"):
-        return HumanCommand("stop")
-    if meant.command == "pause":
-        return HumanCommand("pause")
-    if meant.command == "resume":
-        return HumanCommand("resume")
-    # Facts are read as conditionals are: then "she acknowledges" means what the program waits for.
-    asked, _ = understanding.interpret(f"what will you do if {line}", automaton)
-    when = asked.query.when if asked.query is not None else ()
-    return HumanCommand("happened", when) if when else None

@@ -8,14 +8,17 @@ from pathlib import Path
 from typing import Any
 
 from polaris_nl.commands.common import complain, print_json, print_text, session_of
+from polaris_nl.hands_free.phrases import spoken_phrases
+from polaris_nl.hands_free.recording import kept
+from polaris_nl.hands_free.weight import weigher
 from polaris_nl.language.interpretation import Refusal
-from polaris_nl.model.errors import SpeechError
+from polaris_nl.logs.reader import read_log
+from polaris_nl.model.errors import LogError, SpeechError
 from polaris_nl.session import Session
 from polaris_nl.snapshot import Answer, answer_json
 from polaris_nl.speech.audio import file_blocks
-from polaris_nl.speech.hearing import Utterance, utterance
-from polaris_nl.speech.models import model_folder
-from polaris_nl.speech.recogniser import VoskModel, VoskRecogniser
+from polaris_nl.speech.ears import EarMaker, Ears
+from polaris_nl.speech.hearing import Utterance
 
 NOT_MEANT = (
     "That didn't sound like something for the robot, so I left it alone. Say it again if it was."
@@ -25,16 +28,19 @@ NOT_MEANT = (
 def run(arguments: Namespace) -> int:
     """Transcribes each file, for itself or as one dialogue; 1 where one isn't understood or can't be read."""
     code = 0
-    model = VoskModel(model_folder())
+    maker = EarMaker()
     with session_of(arguments) as session:
-        ear = Ear(session, model, arguments.free)
+        ears = maker.free_ears() if arguments.free else ears_for(session, maker)
         start = session.snapshot.automaton
         for number, path in enumerate(arguments.files):
             if number and not arguments.dialogue:
                 session.begin_again(start)
             try:
-                said, answer = ear.file(path)
-            except SpeechError as error:
+                if path.suffix == ".mcap":
+                    code = replay(path, ears, session, arguments.json) or code
+                    continue
+                said, answer = hear_file(path, ears, session)
+            except (SpeechError, LogError) as error:
                 complain(str(error))
                 if arguments.json:
                     print_json(
@@ -52,39 +58,42 @@ def run(arguments: Namespace) -> int:
     return code
 
 
-class Ear:
-    """Hears recordings in one session.
+def replay(path: Path, ears: Ears, session: Session, as_json: bool) -> int:
+    """Hears the sound that a log keeps again, as the conversation that it was; 1 where some isn't understood.
 
-    Args:
-        session: what is heard changes its program.
-        model: the speech model.
-        free: recognise any words; whether they are meant for the robot is then for the parser alone.
+    Raises:
+        LogError: it can't be read, or keeps no sound.
     """
+    sounds = read_log(path).sounds
+    if not sounds:
+        raise LogError(f"The log {path} keeps no sound; listen --log FILE --record keeps it.")
+    code = 0
+    for name, audio in kept(sounds):
+        said, answer = take(ears.piece(audio, weigher(session)), name, session)
+        show(Path(name), said, answer, session, as_json)
+        code = code or int(answer.interpretation.outcome == "refused")
+    return code
 
-    def __init__(self, session: Session, model: VoskModel, free: bool = False) -> None:
-        self._session = session
-        self._free = VoskRecogniser(model)
-        self._phrased = (
-            self._free if free else VoskRecogniser(model, session.understanding.phrases())
-        )
-        self._is_free = free
 
-    def words(self, path: Path) -> Utterance:
-        """What a recording says.
+def ears_for(session: Session, maker: EarMaker) -> Ears:
+    """Ears for a session's world."""
+    return maker.ears(spoken_phrases(session.understanding))
 
-        Raises:
-            SpeechError: it can't be read.
-        """
-        pieces = list(self._phrased.hear(file_blocks(path)))
-        freely = None if self._is_free else self._free.words
-        return utterance(pieces, self._session.parses, freely)
 
-    def file(self, path: Path) -> tuple[Utterance, Answer]:
-        """Hears a recording and carries out what it says."""
-        said = self.words(path)
-        if said.accepted or (said.text and not self._session.parses(said.text)):
-            return said, self._session.say(said.text, source=path.name)
-        return said, not_meant(self._session, said)
+def hear_file(path: Path, ears: Ears, session: Session) -> tuple[Utterance, Answer]:
+    """Hears a recording and carries out what it says.
+
+    Raises:
+        SpeechError: it can't be read.
+    """
+    return take(ears.utterance(file_blocks(path), weigher(session)), path.name, session)
+
+
+def take(said: Utterance, source: str, session: Session) -> tuple[Utterance, Answer]:
+    """Carries out what was said."""
+    if said.accepted or (said.text and weigher(session)(said.text) is None):
+        return said, session.say(said.text, source=source)
+    return said, not_meant(session, said)
 
 
 def not_meant(session: Session, said: Utterance) -> Answer:

@@ -33,7 +33,17 @@ class Event:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Heard(Event):
-    """Speech was recognised, or a sentence typed (`source` is `typed`, a device or a file)."""
+    """Speech was recognised, or a sentence typed (`source` is `typed`, a device or a file).
+
+    Attributes:
+        alternatives: what it may have been, the likeliest first.
+        free: what a recogniser that expects nothing in particular heard.
+        repaired: the likeliest words, where others were put in their place.
+        decision: `accepted`, or why the words were left alone.
+        audio: the attachment with the sound, where it was asked for.
+        pause_s: the silence that was taken for the end.
+        ms: from the end of the sound to the words.
+    """
 
     topic: ClassVar[str] = "/polaris/heard"
 
@@ -42,6 +52,11 @@ class Heard(Event):
     alternatives: list[str] = field(default_factory=list)
     audio_s: float = 0.0
     ms: float = 0.0
+    free: str = ""
+    repaired: str = ""
+    decision: str = "accepted"
+    audio: str = ""
+    pause_s: float = 0.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -21,12 +21,14 @@ class Log:
     Attributes:
         events: in file order.
         attachments: text by name.
+        sounds: recordings by name.
         complete: False where the file is cut off.
     """
 
     path: Path
     events: list[Event] = field(default_factory=list)
     attachments: dict[str, str] = field(default_factory=dict)
+    sounds: dict[str, bytes] = field(default_factory=dict)
     complete: bool = False
 
 
@@ -47,7 +49,10 @@ def read_log(path: Path) -> Log:
             if event is not None:
                 log.events.append(event)
         elif isinstance(record, Attachment):
-            log.attachments[record.name] = record.data.decode("utf-8", "replace")
+            if record.media_type.startswith("audio/"):
+                log.sounds[record.name] = record.data
+            else:
+                log.attachments[record.name] = record.data.decode("utf-8", "replace")
         elif isinstance(record, DataEnd):
             log.complete = True
     return log

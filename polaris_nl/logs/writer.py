@@ -148,6 +148,30 @@ class LogWriter:
                 return False
             return True
 
+    def attach(self, name: str, kind: str, data: bytes, time: float) -> bool:
+        """Adds a file, such as the sound of what was said.
+
+        Args:
+            name: its name in the log.
+            kind: its media type.
+            data: its content.
+            time: when it was made, in seconds since the epoch.
+
+        Returns:
+            Whether it is in the log.
+        """
+        with self._lock:
+            if self.failure or self._file.closed:
+                return False
+            try:
+                nanoseconds = max(int(time * 1e9), 0)
+                self._writer.add_attachment(nanoseconds, nanoseconds, name, kind, data)
+                self._flush()
+            except OSError as error:
+                self._fail(error)
+                return False
+            return True
+
     def close(self) -> None:
         """Ends the log and makes the compressed, indexed file of it; the journal stays where that fails."""
         with self._lock:

@@ -1,20 +1,18 @@
-"""Audio sources: files of any rate and a microphone, as blocks of 16 kHz mono 16-bit samples."""
+"""Sound as the recogniser takes it: blocks of 16 kHz mono 16-bit samples, from recordings of any kind."""
 
 from __future__ import annotations
 
-import queue
 from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from polaris_nl.model.errors import SpeechError, UsageError
+from polaris_nl.model.errors import SpeechError
 
 RATE = 16_000
 """Samples a second that the recogniser takes."""
 BLOCK = RATE // 10
 """Samples a block: 100 ms."""
-_INSTALL = 'Install the voice packages with: pip install "polaris-nl[voice]"'
+INSTALL = 'Install the voice packages with: pip install "polaris-nl[voice]"'
 
 
 def file_blocks(path: Path) -> Iterator[bytes]:
@@ -26,11 +24,9 @@ def file_blocks(path: Path) -> Iterator[bytes]:
         SpeechError: the file is missing, empty, or no recording.
     """
     try:
-        import numpy
         import soundfile
-        import soxr
-    except ImportError as error:
-        raise SpeechError(f"Reading a recording needs {error.name}. {_INSTALL}") from error
+    except (ImportError, OSError) as error:
+        raise SpeechError(f"Reading a recording needs soundfile. {INSTALL}") from error
     if not path.is_file():
         raise SpeechError(f"There is no recording {path}. Check the path.")
     if path.stat().st_size == 0:
@@ -39,18 +35,11 @@ def file_blocks(path: Path) -> Iterator[bytes]:
         with soundfile.SoundFile(path) as file:
             if file.frames == 0:
                 raise SpeechError(f"The recording {path} has no sound in it; record it again.")
-            resampler = soxr.ResampleStream(file.samplerate, RATE, 1, dtype="float32")
+            converter = Converter(file.samplerate)
             size = max(file.samplerate // 10, 1)
-            rest = numpy.zeros(0, dtype="float32")
             for block in file.blocks(size, dtype="float32", always_2d=True):
-                mono = resampler.resample_chunk(numpy.ascontiguousarray(block.mean(axis=1)))
-                rest = numpy.concatenate((rest, mono))
-                while len(rest) >= BLOCK:
-                    yield _int16(rest[:BLOCK])
-                    rest = rest[BLOCK:]
-            rest = numpy.concatenate((rest, resampler.resample_chunk(rest[:0], last=True)))
-            if len(rest):
-                yield _int16(rest)
+                yield from converter.push(block)
+            yield from converter.rest()
     except soundfile.LibsndfileError as error:
         raise SpeechError(
             f"{path} is no recording that can be read ({str(error.error_string).rstrip('.')}); "
@@ -58,77 +47,69 @@ def file_blocks(path: Path) -> Iterator[bytes]:
         ) from error
 
 
+class Converter:
+    """Turns samples of any rate and channels into blocks, as they come.
+
+    Args:
+        rate: samples a second of what comes.
+
+    Raises:
+        SpeechError: a package is missing.
+    """
+
+    def __init__(self, rate: int) -> None:
+        try:
+            import numpy
+            import soxr
+        except ImportError as error:
+            raise SpeechError(f"Listening needs {error.name}. {INSTALL}") from error
+        self._numpy = numpy
+        self._resampler = soxr.ResampleStream(rate, RATE, 1, dtype="float32")
+        self._rest = numpy.zeros(0, dtype="float32")
+
+    def push(self, samples: Any) -> Iterator[bytes]:
+        """The whole blocks that samples complete.
+
+        Args:
+            samples: floats from -1 to 1, one column a channel.
+        """
+        mono = self._numpy.ascontiguousarray(samples.mean(axis=1), dtype="float32")
+        self._rest = self._numpy.concatenate((self._rest, self._resampler.resample_chunk(mono)))
+        while len(self._rest) >= BLOCK:
+            yield _int16(self._rest[:BLOCK])
+            self._rest = self._rest[BLOCK:]
+
+    def rest(self) -> Iterator[bytes]:
+        """The last block, which may be shorter."""
+        last = self._resampler.resample_chunk(self._rest[:0], last=True)
+        rest, self._rest = self._numpy.concatenate((self._rest, last)), self._rest[:0]
+        while len(rest):
+            yield _int16(rest[:BLOCK])
+            rest = rest[BLOCK:]
+
+    def push_bytes(self, sound: bytes, width: int, channels: int) -> Iterator[bytes]:
+        """The whole blocks that raw little-endian samples complete.
+
+        Args:
+            sound: interleaved samples.
+            width: bytes a sample: 2 or 4.
+            channels: how many are interleaved.
+        """
+        whole = len(sound) // (width * channels) * width * channels
+        samples = self._numpy.frombuffer(sound[:whole], dtype=f"<i{width}")
+        scaled = samples.astype("float32") / float(1 << (8 * width - 1))
+        return self.push(scaled.reshape(-1, channels))
+
+
+def level(block: bytes) -> float:
+    """How loud a block is, in decibels below full scale: 0 is the loudest, silence is -90 or so."""
+    import numpy
+
+    samples = numpy.frombuffer(block, dtype="<i2").astype("float64")
+    power = float(numpy.mean(samples**2)) if len(samples) else 0.0
+    return 10 * float(numpy.log10(max(power, 1.0) / 32768.0**2))
+
+
 def _int16(samples: Any) -> bytes:
     data: bytes = (samples.clip(-1.0, 1.0) * 32767).astype("<i2").tobytes()
     return data
-
-
-def source_blocks(source: str | None) -> Iterator[bytes]:
-    """The blocks of whatever `--mic` names: a file, or a microphone by name, number or default.
-
-    Raises:
-        SpeechError: the source can't be used.
-        UsageError: the source is of a kind that isn't there yet.
-    """
-    if source and source.startswith("tcp://"):
-        raise UsageError(
-            "A microphone over the network isn't there yet; give a recording's path or a microphone's name."
-        )
-    if source and (
-        Path(source).suffix.lower() in (".wav", ".flac", ".ogg") or Path(source).is_file()
-    ):
-        return file_blocks(Path(source))
-    return microphone_blocks(source)
-
-
-def microphone_blocks(device: str | None = None) -> Iterator[bytes]:
-    """Blocks from a microphone, without end.
-
-    Args:
-        device: its name or number; the system's default if None.
-
-    Raises:
-        SpeechError: there is no microphone, or the audio packages are missing.
-    """
-    with _input(device) as blocks:
-        while True:
-            yield blocks.get()
-
-
-def microphones() -> list[str]:
-    """The names of the microphones there are; empty where there is no sound at all."""
-    try:
-        import sounddevice
-    except (ImportError, OSError):
-        return []
-    return [d["name"] for d in sounddevice.query_devices() if d["max_input_channels"] > 0]
-
-
-@contextmanager
-def _input(device: str | None) -> Iterator[queue.Queue[bytes]]:
-    try:
-        import sounddevice
-    except ImportError as error:
-        raise SpeechError(f"A microphone needs sounddevice. {_INSTALL}") from error
-    except OSError as error:
-        raise SpeechError(
-            "A microphone needs the PortAudio library; install it with: sudo scripts/install-system voice"
-        ) from error
-    blocks: queue.Queue[bytes] = queue.Queue()
-
-    def keep(data: Any, frames: int, time: Any, status: Any) -> None:
-        blocks.put(bytes(data))
-
-    name = int(device) if device and device.isdigit() else device
-    try:
-        stream = sounddevice.RawInputStream(
-            samplerate=RATE, blocksize=BLOCK, channels=1, dtype="int16", device=name, callback=keep
-        )
-    except (sounddevice.PortAudioError, ValueError) as error:
-        known = ", ".join(microphones()) or "none"
-        raise SpeechError(
-            f"The microphone {device or '(default)'} can't be used. Microphones here: {known}. "
-            "A recording can be given instead: --mic FILE.wav"
-        ) from error
-    with stream:
-        yield blocks

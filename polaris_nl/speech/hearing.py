@@ -1,29 +1,29 @@
 """From what may have been said to what was said: the first reading that makes sense.
 
 Vosk with phrases turns any speech into phrases. So every reading is parsed strictly, and the same
-audio is decoded
-freely: where the two differ too much, the words were not meant for the robot.
+audio is decoded freely: where the two differ too much, the words were not meant for the robot. The
+more a mistake would cost, the better the two must agree.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+import itertools
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 
+from polaris_nl.speech.lexicon import SoundAlikes
 from polaris_nl.speech.recogniser import UNKNOWN, Spoken
+from polaris_nl.speech.repair import MOST_TRIED, Repairer, apart
+from polaris_nl.speech.weight import Weigh, Weight
 
-MOST_DIFFERENT = 0.65
-"""The most that free decoding may differ, in characters of the longer text. Measured: true commands stay below
-0.18 (clean, 95 %) and 0.50 (10 dB of noise), chatter that passed for a command is above 0.76."""
-
-SHORT = 5
-"""Words up to which a second opinion is asked. What chatter passes for is a short command amid other words;
-a longer sentence that parses strictly was meant, and decoding it again would keep the speaker waiting."""
+MOST_DIFFERENT: Mapping[Weight, float] = {
+    Weight.HARMLESS: 0.65, Weight.CHANGING: 0.6, Weight.MOVING: 0.5,
+}  # fmt: skip
+"""The most that free decoding may differ, in characters of the longer text."""
+MOST_REPAIRED = 0.3
+"""How different a repaired sentence may sound from what was heard freely."""
 
 BREAK = ". "
-
-Parses = Callable[[str], bool]
-"""Whether words, in their place after what was said before, are understood."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,55 +35,129 @@ class Utterance:
         accepted: whether it is taken for speech to the robot.
         alternatives: what else it may have been, of the first piece.
         audio_s: seconds of audio.
+        free: what a recogniser that expects nothing in particular heard.
+        different: how far the two are apart, from 0 to 1.
+        repaired: the words before they were mended, or "".
+        why_not: why it isn't accepted, for the log; or "".
     """
 
     text: str
     accepted: bool
     alternatives: tuple[str, ...] = ()
     audio_s: float = 0.0
+    free: str = ""
+    different: float = 0.0
+    repaired: str = ""
+    why_not: str = ""
 
 
-def utterance(
-    pieces: Sequence[Spoken], parses: Parses, freely: Callable[[bytes], str] | None = None
-) -> Utterance:
+@dataclass(frozen=True)
+class Ways:
+    """What helps to make sense of what was heard.
+
+    Attributes:
+        alikes: words that were listened for under other words.
+        repairer: finds sentences near what was heard; None for none.
+    """
+
+    alikes: SoundAlikes = field(default_factory=SoundAlikes)
+    repairer: Repairer | None = None
+
+
+def utterance(pieces: Sequence[Spoken], weigh: Weigh, ways: Ways = Ways()) -> Utterance:
     """What pieces of speech said together.
 
     Args:
         pieces: in order; the pauses between them may be ends of sentences or hesitations.
-        parses: the strict test.
-        freely: decodes the audio without phrases, for the second opinion.
+        weigh: the strict test, and what a mistake would cost.
+        ways: what helps to make sense of them.
     """
     chosen: list[str] = []
+    repaired = ""
     for piece in pieces:
-        chosen = _with(chosen, _readable(piece), parses) or [*chosen, piece.alternatives[0]]
+        found = _with(chosen, _readings(piece, ways.alikes), weigh)
+        if found is None and ways.repairer is not None:
+            found = _with(chosen, _repairs(piece, ways.repairer), weigh)
+            repaired = repaired or (piece.alternatives[0] if found is not None else "")
+        chosen = found or [*chosen, ways.alikes.put_back(piece.alternatives[0])[-1]]
     text = BREAK.join(chosen)
-    accepted = bool(text) and UNKNOWN not in text and parses(text)
-    if accepted and freely is not None and len(text.split()) <= SHORT:
-        accepted = _borne_out(text, " ".join(freely(piece.audio) for piece in pieces))
-    alternatives = pieces[0].alternatives if pieces else ()
-    return Utterance(text, accepted, alternatives, sum(piece.seconds for piece in pieces))
+    free = " ".join(piece.free for piece in pieces if piece.free)
+    different = difference(text, free)
+    why_not = _why_not(text, different, weigh)
+    return Utterance(
+        text,
+        accepted=not why_not,
+        alternatives=pieces[0].alternatives if pieces else (),
+        audio_s=sum(piece.seconds for piece in pieces),
+        free=free,
+        different=different,
+        repaired=repaired,
+        why_not=why_not,
+    )
 
 
-def _readable(piece: Spoken) -> tuple[str, ...]:
-    return tuple(text for text in piece.alternatives if UNKNOWN not in text)
+def _why_not(text: str, different: float, weigh: Weigh) -> str:
+    if not text:
+        return "no words"
+    if UNKNOWN in text:
+        return "unknown words"
+    weight = weigh(text)
+    if weight is None:
+        return "not understood"
+    if different > MOST_DIFFERENT[weight]:
+        return f"heard freely it is {different:.2f} different"
+    return ""
 
 
-def _with(chosen: list[str], readings: Iterable[str], parses: Parses) -> list[str] | None:
+def difference(text: str, free: str) -> float:
+    """How far the two decodings are apart, in characters of the longer one; 0 without a second one."""
+    from rapidfuzz.distance import Levenshtein
+
+    plain = text.replace(BREAK, " ")
+    return float(Levenshtein.normalized_distance(plain, free)) if free else 0.0
+
+
+def near(pieces: Sequence[Spoken], weigh: Weigh, ways: Ways = Ways(), most: int = 3) -> list[str]:
+    """Sentences that make sense and are near what was heard, for a question about which was meant."""
+    found: dict[str, None] = {}
+    for piece in pieces:
+        repairs = _repairs(piece, ways.repairer) if ways.repairer is not None else iter(())
+        for text in itertools.chain(_readings(piece, ways.alikes), repairs):
+            if weigh(text) is not None:
+                found[text] = None
+            if len(found) == most:
+                return list(found)
+    return list(found)
+
+
+def _readings(piece: Spoken, alikes: SoundAlikes) -> Iterator[str]:
+    seen = set()
+    for text in piece.alternatives:
+        for reading in alikes.put_back(text):
+            if UNKNOWN not in reading and reading not in seen:
+                seen.add(reading)
+                yield reading
+
+
+def _repairs(piece: Spoken, repairer: Repairer) -> Iterator[str]:
+    heard = [text for text in (piece.free, piece.alternatives[0]) if text and UNKNOWN not in text]
+    if piece.free:
+        yield piece.free
+    near = (r.text for r in repairer.candidates(heard))
+    for text in itertools.islice(near, MOST_TRIED):
+        if not piece.free or apart(text, piece.free) <= MOST_REPAIRED:
+            yield text
+
+
+def _with(chosen: list[str], readings: Iterable[str], weigh: Weigh) -> list[str] | None:
     """The pieces with the first reading that makes sense as a new sentence or as more of the last."""
     readings = tuple(readings)
     for reading in readings:
-        if parses(BREAK.join([*chosen, reading])):
+        if weigh(BREAK.join([*chosen, reading])) is not None:
             return [*chosen, reading]
     if chosen:
         for reading in readings:
             joined = [*chosen[:-1], f"{chosen[-1]} {reading}"]
-            if parses(BREAK.join(joined)):
+            if weigh(BREAK.join(joined)) is not None:
                 return joined
     return None
-
-
-def _borne_out(text: str, free: str) -> bool:
-    from rapidfuzz.distance import Levenshtein
-
-    plain = text.replace(BREAK, " ")
-    return bool(Levenshtein.normalized_distance(plain, free) <= MOST_DIFFERENT)

@@ -12,7 +12,7 @@ import os
 import shutil
 import tempfile
 import zipfile
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
 from polaris_nl.model.errors import SpeechError
@@ -52,8 +52,14 @@ _SIZES = {
 }
 """Sizes in bytes of the large files of the model `NAME`: a cut-off file would crash the recogniser."""
 
-SEARCH = {"beam": "15.0", "lattice-beam": "8.0", "max-active": "7000"}
-"""Wider search than the model's own 10 / 2 / 3000: twice the time, and far fewer errors in noise."""
+_UNCUT = {f"endpoint.rule{n}.min-trailing-silence": "60.0" for n in range(1, 5)} | {
+    "endpoint.rule5.min-utterance-length": "120.0"
+}
+"""Where a sentence ends is not for the model to say: it can't know what is still missing from it."""
+NARROW = {"beam": "10.0", "lattice-beam": "2.0", "max-active": "3000", **_UNCUT}
+"""The model's own search, for the second opinion."""
+WIDE = {"beam": "15.0", "lattice-beam": "8.0", "max-active": "7000", **_UNCUT}
+"""Wider search, for phrases: far fewer errors in noise."""
 
 Progress = Callable[[int, int], None]
 """Is told the bytes that are there and the bytes there will be."""
@@ -129,11 +135,11 @@ def fetch(progress: Progress | None = None, target: Path | None = None) -> Path:
     return target
 
 
-def tuned(folder: Path) -> Path:
-    """A copy of a model, by links, that searches more widely; the model itself where none can be made."""
+def tuned(folder: Path, search: Mapping[str, str] = WIDE) -> Path:
+    """A copy of a model, by links, with search settings of its own; the model itself where none can be made."""
     from platformdirs import user_cache_path
 
-    key = hashlib.sha256(f"{folder.resolve()} {sorted(SEARCH.items())}".encode()).hexdigest()[:12]
+    key = hashlib.sha256(f"{folder.resolve()} {sorted(search.items())}".encode()).hexdigest()[:12]
     copy = user_cache_path("polaris-nl") / "models" / f"{folder.name}-{key}"
     if not damage(copy):
         return copy
@@ -141,7 +147,7 @@ def tuned(folder: Path) -> Path:
         copy.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(dir=copy.parent, prefix=".making-") as scratch:
             made = Path(scratch) / copy.name
-            _link(folder.resolve(), made)
+            _link(folder.resolve(), made, search)
             _move_into_place(made, copy)
     except OSError:
         # The search settings are an improvement, not a need: a cache that can't be
@@ -150,20 +156,22 @@ def tuned(folder: Path) -> Path:
     return copy
 
 
-def _link(folder: Path, made: Path) -> None:
+def _link(folder: Path, made: Path, search: Mapping[str, str]) -> None:
     for name in _NEEDED:
         (made / name).parent.mkdir(parents=True, exist_ok=True)
         if name != "conf/model.conf":
             (made / name).symlink_to(folder / name)
     lines = (folder / "conf/model.conf").read_text(encoding="utf-8").splitlines()
-    (made / "conf/model.conf").write_text("\n".join(_settings(lines)) + "\n", encoding="utf-8")
+    (made / "conf/model.conf").write_text(
+        "\n".join(_settings(lines, search)) + "\n", encoding="utf-8"
+    )
 
 
-def _settings(lines: Iterable[str]) -> Iterable[str]:
+def _settings(lines: Iterable[str], search: Mapping[str, str]) -> Iterable[str]:
     for line in lines:
-        if line.lstrip("-").partition("=")[0] not in SEARCH:
+        if line.lstrip("-").partition("=")[0] not in search:
             yield line
-    for key, value in SEARCH.items():
+    for key, value in search.items():
         yield f"--{key}={value}"
 
 

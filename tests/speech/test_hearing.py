@@ -2,19 +2,31 @@
 
 from __future__ import annotations
 
-from polaris_nl.speech.hearing import utterance
+from collections.abc import Callable
+
+import pytest
+
+from polaris_nl.speech.hearing import Utterance, Ways, utterance
+from polaris_nl.speech.lexicon import SoundAlikes
 from polaris_nl.speech.recogniser import Spoken
+from polaris_nl.speech.repair import Repairer
+from polaris_nl.speech.weight import Weigh, Weight
 
 AUDIO = b"\0\0" * 16_000
 
 
-def spoken(*alternatives: str) -> Spoken:
-    return Spoken(alternatives, AUDIO)
+def spoken(*alternatives: str, free: str = "") -> Spoken:
+    return Spoken(alternatives, AUDIO, free)
+
+
+def when(parses: Callable[[str], bool], weight: Weight = Weight.CHANGING) -> Weigh:
+    return lambda text: weight if parses(text) else None
 
 
 def test_the_first_reading_that_parses_wins() -> None:
     said = utterance(
-        [spoken("go hum", "go home", "go to the hall")], lambda t: "home" in t or "hall" in t
+        [spoken("go hum", "go home", "go to the hall")],
+        when(lambda t: "home" in t or "hall" in t),
     )
     assert (said.text, said.accepted, said.audio_s) == ("go home", True, 1.0)
 
@@ -26,24 +38,69 @@ def test_pieces_are_sentences_or_more_of_the_last_one() -> None:
         "bring the cup to the table",
         "go home. bring the cup to the table",
     }
-    two = utterance([spoken("go home"), spoken("bring the cup to the table")], good.__contains__)
+    weigh = when(good.__contains__)
+    two = utterance([spoken("go home"), spoken("bring the cup to the table")], weigh)
     assert two.text == "go home. bring the cup to the table"
-    one = utterance([spoken("bring the cup"), spoken("to the table")], good.__contains__)
+    one = utterance([spoken("bring the cup"), spoken("to the table")], weigh)
     assert one.text == "bring the cup to the table"
 
 
 def test_nothing_that_parses_keeps_the_words_and_is_not_accepted() -> None:
-    said = utterance([spoken("the weather is nice", "the weather is ice")], lambda t: False)
+    said = utterance([spoken("the weather is nice", "the weather is ice")], when(lambda t: False))
     assert (said.text, said.accepted) == ("the weather is nice", False)
-    assert not utterance([], lambda t: True).accepted
+    assert said.why_not == "not understood"
+    assert not utterance([], when(lambda t: True)).accepted
 
 
 def test_unknown_sounds_are_never_accepted() -> None:
-    said = utterance([spoken("[unk] go home")], lambda t: True)
+    said = utterance([spoken("[unk] go home")], when(lambda t: True))
     assert not said.accepted
 
 
 def test_free_listening_must_bear_the_words_out() -> None:
-    piece = [spoken("stop")]
-    assert utterance(piece, lambda t: True, lambda audio: "stopped").accepted
-    assert not utterance(piece, lambda t: True, lambda audio: "what a lovely day it is").accepted
+    weigh = when(lambda t: t == "stop", Weight.HARMLESS)
+    assert utterance([spoken("stop", free="stopped")], weigh).accepted
+    said = utterance([spoken("stop", free="what a lovely day it is")], weigh)
+    assert not said.accepted
+    assert said.why_not.startswith("heard freely it is 0.")
+
+
+@pytest.mark.parametrize(("weight", "accepted"), [(Weight.HARMLESS, True), (Weight.MOVING, False)])
+def test_what_moves_the_robot_needs_more_agreement(weight: Weight, accepted: bool) -> None:
+    piece = spoken("run it now", free="rum eating")
+    assert utterance([piece], when(lambda t: t == "run it now", weight)).accepted is accepted
+
+
+def repaired(piece: Spoken, good: str) -> Utterance:
+    ways = Ways(
+        repairer=Repairer(["bring", "the", "red", "cup", "to", "blue", "table", "go", "home"])
+    )
+    return utterance([piece], when(lambda t: t == good), ways)
+
+
+def test_what_was_heard_freely_is_a_reading_too() -> None:
+    piece = spoken("bring the red to table", free="bring the red cup to the table")
+    said = repaired(piece, "bring the red cup to the table")
+    assert (said.text, said.accepted) == ("bring the red cup to the table", True)
+    assert said.repaired == "bring the red to table"
+
+
+def test_a_word_that_sounds_alike_is_tried_on_the_parser() -> None:
+    piece = spoken("bring the red to table", free="bring the red cop to the table")
+    said = repaired(piece, "bring the red cup to the table")
+    assert (said.text, said.accepted) == ("bring the red cup to the table", True)
+
+
+def test_no_repair_goes_far_from_what_was_heard() -> None:
+    piece = spoken("[unk] cup", free="we had a cup of cocoa with grandma")
+    assert not repaired(piece, "bring the red cup to the table").accepted
+
+
+def test_words_that_were_listened_for_under_others_are_put_back() -> None:
+    ways = Ways(SoundAlikes({"zorblax": "zor blacks"}))
+    said = utterance(
+        [spoken("bring the zor blacks", free="bring the soar blacks")],
+        when(lambda t: t == "bring the zorblax"),
+        ways,
+    )
+    assert (said.text, said.accepted) == ("bring the zorblax", True)

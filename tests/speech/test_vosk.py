@@ -9,15 +9,17 @@ import pytest
 import soundfile
 
 from polaris_nl.automaton.automaton import Automaton
+from polaris_nl.hands_free.weight import weight_of
 from polaris_nl.language.tokens import phrase
 from polaris_nl.language.understanding import Understanding
 from polaris_nl.model.data import data_folder
 from polaris_nl.model.errors import SpeechError
 from polaris_nl.model.world_file import load_world
 from polaris_nl.speech.audio import RATE, file_blocks
-from polaris_nl.speech.hearing import utterance
+from polaris_nl.speech.ears import EarMaker, Ears
 from polaris_nl.speech.models import model_folder
-from polaris_nl.speech.recogniser import VoskModel, VoskRecogniser
+from polaris_nl.speech.vosk_recogniser import VoskModel
+from polaris_nl.speech.weight import Weigh
 
 RECORDINGS = data_folder("domains") / "caregiving/recordings"
 SENTENCES = (
@@ -28,8 +30,8 @@ SENTENCES = (
 
 
 @pytest.fixture(scope="module")
-def model() -> VoskModel:
-    return VoskModel(model_folder())
+def maker() -> EarMaker:
+    return EarMaker()
 
 
 @pytest.fixture(scope="module")
@@ -38,29 +40,35 @@ def understanding() -> Understanding:
 
 
 @pytest.fixture(scope="module")
-def phrased(model: VoskModel, understanding: Understanding) -> VoskRecogniser:
-    return VoskRecogniser(model, understanding.phrases())
+def ears(maker: EarMaker, understanding: Understanding) -> Ears:
+    return maker.ears(understanding.phrases())
 
 
-def test_the_recording_is_three_sentences(
-    phrased: VoskRecogniser, understanding: Understanding
-) -> None:
-    pieces = list(phrased.hear(file_blocks(RECORDINGS / "lunch.flac")))
-    said = utterance(pieces, lambda t: understanding.parses(t, Automaton()))
+@pytest.fixture(scope="module")
+def weigh(understanding: Understanding) -> Weigh:
+    return lambda text: weight_of(understanding.interpret(text, Automaton())[0])
+
+
+def test_the_recording_is_three_sentences(ears: Ears, weigh: Weigh) -> None:
+    said = ears.utterance(file_blocks(RECORDINGS / "lunch.flac"), weigh)
     assert said.text == ". ".join(SENTENCES)
     assert said.accepted
-    assert 11 < said.audio_s < 14
+    assert 10 < said.audio_s < 14
 
 
-def test_one_breath_is_one_utterance(phrased: VoskRecogniser, understanding: Understanding) -> None:
-    pieces = list(phrased.hear(file_blocks(RECORDINGS / "lunch-in-one-breath.flac")))
-    said = utterance(pieces, lambda t: understanding.parses(t, Automaton()))
+def test_the_same_sound_is_heard_the_same_again(ears: Ears, weigh: Weigh) -> None:
+    first = ears.utterance(file_blocks(RECORDINGS / "lunch.flac"), weigh)
+    assert ears.utterance(file_blocks(RECORDINGS / "lunch.flac"), weigh) == first
+
+
+def test_one_breath_is_one_utterance(ears: Ears, weigh: Weigh) -> None:
+    said = ears.utterance(file_blocks(RECORDINGS / "lunch-in-one-breath.flac"), weigh)
     assert said.accepted
     assert said.text.replace(". ", " ").split()[:7] == SENTENCES[0].split()
 
 
 def test_a_44_khz_stereo_copy_with_noise_is_heard_the_same(
-    phrased: VoskRecogniser, understanding: Understanding, tmp_path: Path
+    ears: Ears, weigh: Weigh, tmp_path: Path
 ) -> None:
     import soxr
 
@@ -69,26 +77,21 @@ def test_a_44_khz_stereo_copy_with_noise_is_heard_the_same(
     noise = numpy.random.default_rng(1).normal(0, 0.003, len(loud)).astype("float32")
     path = tmp_path / "stereo.wav"
     soundfile.write(path, numpy.column_stack([loud + noise, loud]), 44_100)
-    said = utterance(
-        list(phrased.hear(file_blocks(path))), lambda t: understanding.parses(t, Automaton())
-    )
-    assert said.text == ". ".join(SENTENCES)
+    assert ears.utterance(file_blocks(path), weigh).text == ". ".join(SENTENCES)
 
 
 def test_noise_is_nothing_and_the_terminal_stays_clean(
-    model: VoskModel,
-    phrased: VoskRecogniser,
-    understanding: Understanding,
-    tmp_path: Path,
-    capfd: pytest.CaptureFixture[str],
+    ears: Ears, weigh: Weigh, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
     noise = numpy.random.default_rng(2).normal(0, 0.01, RATE * 3).astype("float32")
     soundfile.write(tmp_path / "noise.wav", noise, RATE)
-    pieces = list(phrased.hear(file_blocks(tmp_path / "noise.wav")))
-    free = VoskRecogniser(model)
-    said = utterance(pieces, lambda t: understanding.parses(t, Automaton()), free.words)
-    assert not said.accepted
+    assert not ears.utterance(file_blocks(tmp_path / "noise.wav"), weigh).accepted
     assert capfd.readouterr() == ("", "")
+
+
+@pytest.fixture(scope="module")
+def model() -> VoskModel:
+    return VoskModel(model_folder())
 
 
 def test_the_lexicon_names_its_gaps(model: VoskModel) -> None:

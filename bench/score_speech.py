@@ -1,0 +1,245 @@
+"""`python -m bench.score_speech`: how well speech is understood, on the project's own speech set.
+
+| column | share of |
+|---|---|
+| words | sentences heard word for word (the recogniser alone) |
+| program | sentences that led to the right program, question, answer or command |
+| as typed | the same, of the sentences that are understood rightly when typed |
+| wrong | sentences that led to a program or command that was not meant, and weren't questioned or refused |
+| foreign | sentences meant for somebody else that were taken for the robot's |
+
+`--some N` scores every N-th sentence; `--only CONDITION` one condition; `--misses` lists what went wrong.
+"""
+
+from __future__ import annotations
+
+import argparse
+import multiprocessing
+import sys
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cache
+
+from bench.speech_audio import CONDITIONS, VOICES, Sentence, audio, foreign, sentences
+from bench.speech_decoding import Decodings, cut
+from bench.speech_meaning import Context
+from polaris_nl.language.understanding import Understanding
+from polaris_nl.model.world_file import load_world
+from polaris_nl.speech.activity import SileroActivity
+from polaris_nl.speech.hearing import Utterance, Ways, utterance
+from polaris_nl.speech.models import NARROW, WIDE, model_folder
+from polaris_nl.speech.recogniser import UNKNOWN, Spoken
+from polaris_nl.speech.repair import Repairer
+from polaris_nl.speech.vosk_recogniser import ALTERNATIVES, VoskModel, VoskRecogniser
+
+WORLDS = ("care-home", "dinner-party")
+SEARCHES = {"wide": WIDE, "narrow": NARROW}
+SYSTEMS = ("free Vosk", "Vosk, phrases", "Polaris NL")
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """One sentence in one voice and one condition."""
+
+    sentence: Sentence
+    world: str
+    voice: str
+    condition: str
+
+
+@dataclass(frozen=True, slots=True)
+class Score:
+    """What came of one task in one system."""
+
+    task: Task
+    system: str
+    heard: str
+    meaning: str
+    right: bool
+    typed_right: bool
+    exact: bool
+    wrong: bool
+    free: str = ""
+    note: str = ""
+
+
+@cache
+def _understanding(world: str) -> Understanding:
+    return Understanding(load_world(world))
+
+
+@cache
+def _model(search: str) -> VoskModel:
+    return VoskModel(model_folder(), SEARCHES[search])
+
+
+@cache
+def _decodings(world: str, search: str) -> Decodings:
+    """What is heard with the phrases of a world, or freely where it is ""."""
+    phrases = _understanding(world).phrases() if world else None
+    return Decodings(
+        (phrases, sorted(SEARCHES[search].items()), ALTERNATIVES),
+        lambda: VoskRecogniser(_model(search), phrases).decoder(),
+    )
+
+
+@cache
+def _ways(world: str) -> Ways:
+    words = {word for phrase in _understanding(world).phrases() for word in phrase.split()}
+    return Ways(repairer=Repairer(words))
+
+
+@cache
+def _activity() -> SileroActivity:
+    return SileroActivity()
+
+
+@cache
+def _context(world: str, after: tuple[str, ...]) -> Context:
+    return Context(_understanding(world), after)
+
+
+def _pieces(world: str, search: str, sounds: Sequence[bytes], second: bool) -> list[Spoken]:
+    found = []
+    for sound in sounds:
+        texts = _decodings(world, search).hear(sound)
+        free = _decodings("", "narrow").hear(sound) if second else ()
+        if texts:
+            found.append(Spoken(texts, sound, free[0] if free else ""))
+    return found
+
+
+def _plain(task: Task, world: str, sounds: Sequence[bytes], context: Context) -> Utterance:
+    texts = [p.alternatives[0] for p in _pieces(world, "narrow", sounds, second=False)]
+    text = ". ".join(texts)
+    return Utterance(text, bool(text) and UNKNOWN not in text and context.weigh(text) is not None)
+
+
+def _hear(system: str, task: Task, sounds: Sequence[bytes], context: Context) -> Utterance:
+    if system == SYSTEMS[0]:
+        return _plain(task, "", sounds, context)
+    if system == SYSTEMS[1]:
+        return _plain(task, task.world, sounds, context)
+    pieces = _pieces(task.world, "wide", sounds, second=True)
+    return utterance(pieces, context.weigh, _ways(task.world))
+
+
+def score(order: tuple[Task, tuple[str, ...]]) -> list[Score]:
+    """What each system makes of a sentence."""
+    task, systems = order
+    sentence = task.sentence
+    sounds = cut(audio(sentence.text, task.voice, task.condition), _activity())
+    context = _context(task.world, sentence.after)
+    typed_right = context.meaning(sentence.text) == sentence.expect
+    found = []
+    for system in systems:
+        said = _hear(system, task, sounds, context)
+        meaning = context.meaning(said.text) if said.accepted else "refused"
+        right = meaning == sentence.expect
+        acts = meaning.startswith(("start", "command"))
+        exact = said.text.replace(". ", " ").replace("mister", "mr") == sentence.text
+        found.append(
+            Score(
+                task,
+                system,
+                said.text,
+                meaning,
+                right,
+                typed_right,
+                exact,
+                acts and not right,
+                said.free,
+                f" ({said.why_not})"
+                if said.why_not
+                else f" <- {said.repaired}" * bool(said.repaired),
+            )
+        )
+    return found
+
+
+def tasks(some: int, conditions: Sequence[str], voices: Sequence[str]) -> Iterator[Task]:
+    """Everything that is to be heard: clean in every voice, with noise in two that take turns."""
+    for condition in conditions:
+        turn = CONDITIONS.index(condition)
+        for number, sentence in enumerate((*sentences(), *foreign())):
+            if number % some:
+                continue
+            both = {
+                VOICES[(number + turn) % len(VOICES)],
+                VOICES[(number + turn + 2) % len(VOICES)],
+            }
+            world = sentence.world or WORLDS[number // some % 2]
+            for voice in voices:
+                if condition == "clean" or voice in both:
+                    yield Task(sentence, world, voice, condition)
+
+
+def _percent(part: int, whole: int) -> str:
+    return f"{100 * part / whole:5.1f}" if whole else "    -"
+
+
+def table(scores: Sequence[Score], conditions: Sequence[str], systems: Sequence[str]) -> None:
+    """Prints the shares, a line for each condition and system."""
+    head = ("condition", "system", "words", "program", "as typed", "wrong", "foreign")
+    sys.stdout.write("{:<15} {:<14} {:>7} {:>9} {:>9} {:>7} {:>8}\n".format(*head))
+    for condition in (*conditions, *(("all",) if len(conditions) > 1 else ())):
+        for system in systems:
+            own = [
+                s for s in scores
+                if s.system == system and condition in (s.task.condition, "all")
+            ]  # fmt: skip
+            meant = [s for s in own if s.task.sentence.world]
+            others = [s for s in own if not s.task.sentence.world]
+            typed = [s for s in meant if s.typed_right]
+            cells = (
+                _percent(sum(s.exact for s in meant), len(meant)),
+                _percent(sum(s.right for s in meant), len(meant)),
+                _percent(sum(s.right for s in typed), len(typed)),
+                _percent(sum(s.wrong for s in meant), len(meant)),
+                _percent(sum(s.meaning != "refused" for s in others), len(others)),
+            )
+            sys.stdout.write(
+                "{:<15} {:<14} {:>7} {:>9} {:>9} {:>7} {:>8}\n".format(condition, system, *cells)
+            )
+    sys.stdout.flush()
+
+
+def misses(scores: Sequence[Score]) -> None:
+    """Lists what the last system got wrong, the most frequent sentence first."""
+    wrong = [s for s in scores if s.system == SYSTEMS[-1] and not s.right]
+    often = Counter(s.task.sentence.text for s in wrong)
+    for s in sorted(wrong, key=lambda s: (-often[s.task.sentence.text], s.task.sentence.text)):
+        mark = "!" if s.wrong or not s.task.sentence.world else " "
+        typed = "" if s.typed_right or not s.task.sentence.world else " (typed, too)"
+        sys.stdout.write(
+            f"{mark} {s.task.voice:<5} {s.task.condition:<13} {s.task.sentence.text}{typed}\n"
+            f"      heard {s.heard!r} free {s.free!r}: {s.meaning}{s.note}\n"
+        )
+
+
+def main() -> None:
+    """Scores and prints."""
+    parser = argparse.ArgumentParser(description="How well speech is understood.")
+    parser.add_argument("--some", type=int, default=1, help="every N-th sentence")
+    parser.add_argument("--only", choices=CONDITIONS, action="append", help="these conditions")
+    parser.add_argument("--voice", choices=VOICES, action="append", help="these voices")
+    parser.add_argument("--system", choices=SYSTEMS, action="append", help="these systems")
+    parser.add_argument("--misses", action="store_true", help="list what went wrong")
+    parser.add_argument("--jobs", type=int, default=1, help="processes")
+    given = parser.parse_args()
+    conditions = tuple(given.only or CONDITIONS)
+    systems = tuple(given.system or SYSTEMS)
+    work = [(task, systems) for task in tasks(given.some, conditions, tuple(given.voice or VOICES))]
+    if given.jobs > 1:
+        with multiprocessing.get_context("spawn").Pool(given.jobs) as pool:
+            found = [s for scores in pool.imap(score, work, 8) for s in scores]
+    else:
+        found = [s for order in work for s in score(order)]
+    if given.misses:
+        misses(found)
+    table(found, conditions, systems)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,120 @@
+"""The speech set's audio: sentences in several voices, clean and with noise added, the same every time."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy
+import soundfile
+import yaml
+
+from polaris_nl.speech.audio import RATE
+
+SET = Path(__file__).parent / "speech_set"
+FOLDER = Path.home() / ".cache" / "polaris-nl" / "speech-set"
+VOICES = ("heart", "joe", "slt", "rms", "kumo")
+CONDITIONS = ("clean", "kitchen 20 dB", "babble 20 dB", "kitchen 10 dB", "babble 10 dB")
+
+
+@dataclass(frozen=True, slots=True)
+class Sentence:
+    """One sentence of the set; `world` is "" for speech that isn't meant for the robot."""
+
+    text: str
+    world: str = ""
+    after: tuple[str, ...] = ()
+    expect: str = "refused"
+
+
+@cache
+def sentences() -> tuple[Sentence, ...]:
+    """What is said to the robot."""
+    groups = yaml.safe_load((SET / "sentences.yaml").read_text(encoding="utf-8"))
+    return tuple(
+        Sentence(text, group["world"], tuple(group.get("after", ())), expect)
+        for group in groups
+        for text, expect in group["say"].items()
+    )
+
+
+@cache
+def foreign() -> tuple[Sentence, ...]:
+    """What is said to other people."""
+    return tuple(map(Sentence, (SET / "foreign.txt").read_text(encoding="utf-8").splitlines()))
+
+
+def audio(text: str, voice: str, condition: str) -> bytes:
+    """A sentence as 16 kHz mono 16-bit samples.
+
+    Args:
+        text: the sentence.
+        voice: one of VOICES.
+        condition: one of CONDITIONS.
+    """
+    name = hashlib.sha256(text.encode()).hexdigest()[:16]
+    samples = _samples(FOLDER / voice / f"{name}.flac")
+    kind, _, rest = condition.partition(" ")
+    if rest:
+        seed = int(hashlib.sha256(f"{voice} {text} {condition}".encode()).hexdigest()[:8], 16)
+        samples = _with_noise(samples, kind, float(rest.split()[0]), seed)
+    data: bytes = (numpy.clip(samples, -1, 1) * 32767).astype("<i2").tobytes()
+    return data
+
+
+def blocks(data: bytes) -> Iterator[bytes]:
+    """Audio in blocks of 100 ms."""
+    size = RATE // 10 * 2
+    return (data[at : at + size] for at in range(0, len(data), size))
+
+
+def _samples(path: Path) -> Any:
+    samples, rate = soundfile.read(path, dtype="float32")
+    assert rate == RATE
+    return samples
+
+
+def _with_noise(samples: Any, kind: str, decibels: float, seed: int) -> Any:
+    """Noise at a ratio to the power of the speech, pauses left out of account."""
+    random = numpy.random.default_rng(seed)
+    noise = (_kitchen if kind == "kitchen" else _babble)(len(samples), random)
+    loud = samples[numpy.abs(samples) > 0.02]
+    power = float(numpy.mean(loud**2)) if len(loud) else 0.01
+    scale = numpy.sqrt(power / 10 ** (decibels / 10) / max(float(numpy.mean(noise**2)), 1e-12))
+    mixed = samples + noise * scale
+    return mixed / max(1.0, float(numpy.abs(mixed).max()))
+
+
+def _kitchen(length: int, random: numpy.random.Generator) -> Any:
+    """A fan or a tap (pink noise), and dishes: short ringing sounds of a few high tones."""
+    spectrum = numpy.fft.rfft(random.normal(size=length))
+    noise = numpy.fft.irfft(spectrum / numpy.sqrt(numpy.arange(len(spectrum)) + 1.0), length)
+    noise /= numpy.std(noise)
+    time = numpy.arange(RATE // 4) / RATE
+    for _ in range(max(1, round(length / RATE * 2))):
+        tones = random.uniform(1500, 6000, 4)
+        clink = sum(numpy.sin(2 * numpy.pi * f * time) for f in tones) * numpy.exp(-time * 30)
+        at = int(random.integers(0, length))
+        piece = clink[: length - at]
+        noise[at : at + len(piece)] += piece * random.uniform(0.5, 2)
+    return noise
+
+
+def _babble(length: int, random: numpy.random.Generator) -> Any:
+    """Six people talking about something else."""
+    said = [s.text for s in foreign()]
+    total = numpy.zeros(length, dtype="float64")
+    for _ in range(6):
+        own = numpy.zeros(0, dtype="float32")
+        voice = VOICES[int(random.integers(len(VOICES)))]
+        while len(own) < length + RATE:
+            text = said[int(random.integers(len(said)))]
+            name = hashlib.sha256(text.encode()).hexdigest()[:16]
+            own = numpy.concatenate([own, _samples(FOLDER / voice / f"{name}.flac")])
+        start = int(random.integers(0, len(own) - length))
+        total += own[start : start + length]
+    return total

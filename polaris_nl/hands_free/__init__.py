@@ -1,0 +1,1 @@
+"""Hands free: a session and speech brought together, from sound to what is said back."""

@@ -1,0 +1,155 @@
+"""What to do about what was heard, and what to say to it: the policy of a conversation without a screen.
+
+Questions are answered at once; edits are applied and echoed; a run needs a yes after the echo of
+what will happen. What isn't understood twice is offered as numbered choices.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from polaris_nl.execution.events import Event, Said
+from polaris_nl.execution.events import Heard as HeardEvent
+from polaris_nl.execution.state import HumanCommand
+from polaris_nl.hands_free.choices import Choices, choices_among
+from polaris_nl.hands_free.running import Running, told
+from polaris_nl.session import Session
+from polaris_nl.snapshot import Answer
+from polaris_nl.speech.hearing import Utterance
+
+FAILURES = 2
+"""After so many failures in a row, choices are offered."""
+MEANT = 0.4
+"""Speech that isn't understood, but that both decodings hear so alike, was meant for the robot."""
+
+
+@dataclass(frozen=True)
+class Reply:
+    """What came of an utterance.
+
+    Attributes:
+        said: what was heard.
+        text: what to answer, or "" for nothing.
+        answer: the session's answer, where it was asked.
+        ends: the conversation is over.
+        starts: a run may start: the user has said yes.
+    """
+
+    said: Utterance
+    text: str = ""
+    answer: Answer | None = None
+    ends: bool = False
+    starts: bool = False
+
+
+class Conversation:
+    """One user's conversation about one program.
+
+    Args:
+        session: what is changed and asked.
+        sink: is given what is said, as events.
+        aloud: what it says is spoken.
+        now: the time in seconds since the epoch.
+    """
+
+    def __init__(
+        self,
+        session: Session,
+        sink: Callable[[Event], None] = lambda event: None,
+        aloud: bool = False,
+        now: Callable[[], float] = time.time,
+    ) -> None:
+        self.session = session
+        self.running: Running | None = None
+        self._sink = sink
+        self._aloud = aloud
+        self.now = now
+        self._failures = 0
+        self._choices: Choices | None = None
+
+    @property
+    def _runs(self) -> Running | None:
+        return self.running if self.running is not None and self.running.going_on else None
+
+    def note(self, heard: HeardEvent) -> None:
+        """Logs what was heard where nothing else follows from it."""
+        self._sink(heard)
+
+    def quick(self, command: str) -> str:
+        """Stops or pauses at once, whatever else goes on; what to say to it."""
+        runs = self._runs
+        if runs is not None:
+            runs.command(HumanCommand("stop" if command == "stop" else "pause", source="voice"))
+        return "Stopped." if command == "stop" else "Paused."
+
+    def take(
+        self, said: Utterance, heard: HeardEvent, called: bool, near: Callable[[], Sequence[str]]
+    ) -> Reply:
+        """Does what an utterance asks for.
+
+        Args:
+            said: what was heard.
+            heard: the same for the log.
+            called: attention was called (a key, the wake word), so that it was meant for the robot.
+            near: finds what else may have been said.
+        """
+        if self._choices is not None:
+            chosen = self._choices.chosen(said.text)
+            if chosen is not None:
+                self._choices = None
+                self._failures = 0
+                if not chosen:
+                    self._sink(heard)
+                    return self._reply(said, "All right. Say it in other words.")
+                return self._act(said, chosen, heard)
+        if said.accepted:
+            self._failures, self._choices = 0, None
+            return self._act(said, said.text, heard)
+        if not said.text or not (called or said.different <= MEANT):
+            self._sink(heard)
+            return Reply(said)  # Not meant for the robot: it doesn't butt in.
+        return self._failed(said, heard, near)
+
+    def _act(self, said: Utterance, text: str, heard: HeardEvent) -> Reply:
+        runs = self._runs
+        if runs is not None:
+            command = told(text, self.session)
+            if command is not None:
+                self._sink(heard)
+                runs.command(command)
+                return self._reply(said, _RUN_ANSWERS.get(command.kind, "All right."))
+        answer = self.session.say(text, source="voice", heard=heard)
+        self._tell(answer.say)
+        return Reply(
+            said,
+            answer.say,
+            answer,
+            ends=answer.interpretation.command == "quit",
+            starts=answer.confirmed,
+        )
+
+    def _failed(
+        self, said: Utterance, heard: HeardEvent, near: Callable[[], Sequence[str]]
+    ) -> Reply:
+        self._failures += 1
+        if self._failures >= FAILURES:
+            self._choices = choices_among(near(), ("help", "read me the program"))
+            if self._choices is not None:
+                self._sink(heard)
+                return self._reply(said, self._choices.say)
+        answer = self.session.say(said.text, source="voice", heard=heard)
+        self._tell(answer.say)
+        return Reply(said, answer.say, answer)
+
+    def _reply(self, said: Utterance, text: str) -> Reply:
+        self._tell(text)
+        return Reply(said, text)
+
+    def _tell(self, text: str) -> None:
+        if text and self._aloud:
+            self._sink(Said(time=self.now(), text=text, aloud=True))
+
+
+_RUN_ANSWERS = {"stop": "Stopped.", "pause": "Paused.", "resume": "Going on."}

@@ -1,0 +1,111 @@
+"""Everything that hearing takes, for one world at a time: decoders, the table of sound-alikes, the repairer."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+
+from polaris_nl.speech.activity import Activity, SileroActivity
+from polaris_nl.speech.hearing import Utterance, Ways, utterance
+from polaris_nl.speech.lexicon import SoundAlikes, sound_alikes
+from polaris_nl.speech.models import NARROW, model_folder
+from polaris_nl.speech.recogniser import Decoder, Spoken, pieces
+from polaris_nl.speech.repair import Repairer
+from polaris_nl.speech.vosk_recogniser import VoskModel, VoskRecogniser
+from polaris_nl.speech.weight import Weigh
+
+_ORDINARY = (
+    "the a and to you i it is that was he she we they of in on for with at by so not what have are do this "
+    "me my can will just no yes go get bring put take tell who how where when if then but or up out down top "
+    "shop step soap drop spot cause course pass past please house"
+)
+"""Words that other speech is made of, and words that sound like a quick one: what is none of these is quick."""
+QUICK_PHRASES = ("stop", "pause", "stop stop stop", *_ORDINARY.split())
+
+
+@dataclass(frozen=True)
+class Ears:
+    """What hears one stream of sound in one world.
+
+    Attributes:
+        phrased: hears the world's phrases.
+        free: hears anything, for a second opinion; None where `phrased` does.
+        quick: hears little but the words that act at once.
+        activity: where speech is.
+        ways: what helps to make sense of what was heard.
+    """
+
+    phrased: Decoder
+    free: Decoder | None
+    quick: Decoder
+    activity: Activity
+    ways: Ways
+
+    @property
+    def alikes(self) -> SoundAlikes:
+        """Which of the world's words are listened for under other words, and which can't be heard."""
+        return self.ways.alikes
+
+    def utterance(self, blocks: Iterable[bytes], weigh: Weigh) -> Utterance:
+        """What a recording says as a whole."""
+        found = list(pieces(blocks, self.activity, self.phrased, self.free))
+        return utterance(found, weigh, self.ways)
+
+    def piece(self, audio: bytes, weigh: Weigh) -> Utterance:
+        """What one piece of speech says, that was cut out before."""
+        self.phrased.feed(audio)
+        texts = self.phrased.finish()
+        free: tuple[str, ...] = ()
+        if self.free is not None:
+            self.free.feed(audio)
+            free = self.free.finish()
+        found = [Spoken(texts, audio, free[0] if free else "")] if texts else []
+        return utterance(found, weigh, self.ways)
+
+
+class EarMaker:
+    """Makes ears, each time the world changes: the models are loaded once.
+
+    Raises:
+        SpeechError: a package or the model is missing.
+    """
+
+    def __init__(self) -> None:
+        folder = model_folder()
+        self._activity: Callable[[], Activity] = SileroActivity
+        self._wide = VoskModel(folder)
+        self._narrow = VoskModel(folder, NARROW)
+
+    def ears(self, phrases: Sequence[str], words: Sequence[str] = ()) -> Ears:
+        """Ears for a world.
+
+        Args:
+            phrases: what may be said.
+            words: words of the language that may stand for one that the recogniser lacks.
+        """
+        vocabulary = {word for phrase in phrases for word in phrase.split()}
+        alikes = sound_alikes(vocabulary, self._wide.knows, words)
+        phrased = VoskRecogniser(self._wide, alikes.listened_for(phrases))
+        free = VoskRecogniser(self._narrow)
+        ways = Ways(alikes, Repairer(vocabulary))
+        quick = VoskRecogniser(self._narrow, QUICK_PHRASES, alternatives=1)
+        return Ears(phrased.decoder(), free.decoder(), quick.decoder(), self._activity(), ways)
+
+    def free_ears(self) -> Ears:
+        """Ears that expect nothing in particular."""
+        decoder = VoskRecogniser(self._wide).decoder()
+        return Ears(decoder, None, decoder, self._activity(), Ways())
+
+
+def gaps_in_words(alikes: SoundAlikes, names: Iterable[str]) -> list[str]:
+    """What a user should know of names that the recogniser lacks, one sentence each."""
+    words = {word for name in names for word in name.split()}
+    told = [
+        f'I listen for "{word}" as "{alikes.inward[word]}".'
+        for word in sorted(words & alikes.inward.keys())
+    ]
+    told += [
+        f'I can\'t hear the word "{word}"; give what it names a synonym in the world file.'
+        for word in sorted(words.intersection(alikes.gaps))
+    ]
+    return told

