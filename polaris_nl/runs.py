@@ -2,24 +2,31 @@
 
 from __future__ import annotations
 
+import hashlib
+import platform
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field, replace
+from importlib import metadata
 from pathlib import Path
 
+from polaris_nl import __version__
 from polaris_nl.automaton.automaton import Automaton
 from polaris_nl.automaton.program import Program, program_json
-from polaris_nl.execution.backend import Robot
+from polaris_nl.execution.backend import Health, Observation, Robot
 from polaris_nl.execution.clock import Clock, RealClock, VirtualClock
-from polaris_nl.execution.events import Event, Failed, Heard, Planned, Understood
+from polaris_nl.execution.events import Event, Failed, Planned
 from polaris_nl.execution.replanner import InlineReplanner, Replanner, ThreadedReplanner
 from polaris_nl.execution.resuming import ResumePoint, resume_point
 from polaris_nl.execution.runner import RunResult, run
 from polaris_nl.execution.settings import RunSettings
 from polaris_nl.execution.simulation import SimulatedRobot, SimulationSettings
 from polaris_nl.execution.state import HumanCommand, RunPlan
+from polaris_nl.language.grammar import grammar_folder, grammar_path
 from polaris_nl.logs.paths import new_log_path
+from polaris_nl.logs.privacy import KEEP_ALL, Privacy
 from polaris_nl.logs.reader import read_log
-from polaris_nl.logs.writer import LogWriter, attachments_of
+from polaris_nl.logs.writer import LogSettings, LogWriter, attachments_of
+from polaris_nl.model.domain import Domain
 from polaris_nl.planning.plan_json import plan_json
 from polaris_nl.planning.planner import Planner
 from polaris_nl.planning.result import BranchingPlan
@@ -34,7 +41,9 @@ class RunOrder:
             people who do nothing.
         live: in real time; otherwise as fast as the machine can, with the same events.
         log: the log's path; a new one in the log folder by default.
-        before: events that led to this program (what was heard and understood), kept in the log.
+        before: events that led to this program (what was heard, understood and changed), kept in the log.
+        privacy: what the log leaves out.
+        halt_without_log: a run whose log can't be written any more halts; otherwise it goes on.
         resume: where an earlier run had come to (`resumable`); None begins at the start.
     """
 
@@ -47,6 +56,8 @@ class RunOrder:
     settings: RunSettings = field(default_factory=RunSettings)
     before: tuple[Event, ...] = ()
     resume: ResumePoint | None = None
+    privacy: Privacy = KEEP_ALL
+    halt_without_log: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,14 +101,15 @@ def run_on(
     now = clock.now()
     path = order.log or new_log_path(planner.world.name)
     plan = RunPlan(order.automaton, order.plan, planner.world, planner.wording, order.settings)
-    with LogWriter(path, _attachments(order)) as log:
+    keeping = LogSettings(privacy=order.privacy)
+    with LogWriter(path, _attachments(order), keeping) as log:
+        watch = _LogWatch(log, order.halt_without_log)
 
         def sink(event: Event) -> None:
-            sound = not log.failure
             log.write(event)
             show(event)
-            if sound and log.failure:
-                show(Failed(time=event.time, text=log.failure, what="log"))
+            for text in watch.news():
+                show(Failed(time=event.time, text=text, what="log"))
 
         for event in _before(order, now):
             log.write(event)
@@ -107,19 +119,20 @@ def run_on(
             try:
                 result = run(
                     plan,
-                    robot,
+                    watch.over(robot),
                     clock,
                     confirmed=confirmed,
                     sink=sink,
                     commands=commands,
                     replanner=replanner,
                     resume=order.resume.state if order.resume else None,
+                    record=log.write,
                 )
             finally:
                 robot.close()
         finally:
             replanner.close()
-    return RunReport(result, path, log.failure)
+    return RunReport(result, path, log.failure or log.lost)
 
 
 def run_simulated(
@@ -177,12 +190,69 @@ def _replanner(planner: Planner, clock: Clock) -> Replanner:
 
 
 def _before(order: RunOrder, now: float) -> Iterable[Event]:
-    yield from (e for e in order.before if isinstance(e, Heard | Understood))
-    plan = plan_json(order.plan, order.automaton)
-    yield Planned(time=now, revision=0, status=order.plan.status, plan=plan, ms=order.plan.ms)
+    yield from order.before
+    if not any(isinstance(e, Planned) for e in order.before):
+        plan = plan_json(order.plan, order.automaton)
+        yield Planned(time=now, revision=0, status=order.plan.status, plan=plan, ms=order.plan.ms)
 
 
 def _attachments(order: RunOrder) -> Mapping[str, str]:
     world = order.planner.world
     program = program_json(Program(order.automaton, world.domain.name, world.name))
-    return attachments_of(program, world.domain.source, world.source)
+    settings = {"run": asdict(order.settings), "versions": versions(world.domain)}
+    return attachments_of(program, world.domain.source, world.source, settings)
+
+
+def versions(domain: Domain) -> dict[str, str]:
+    """What a run depends on besides its program: of programs the versions, of grammars a hash."""
+    files = sorted(grammar_folder().rglob("*.yaml"))
+    own = grammar_path(domain)
+    digest = hashlib.sha256()
+    for path in (*files, *([own] if own is not None and own not in files else [])):
+        digest.update(path.read_bytes())
+    return {
+        "polaris-nl": __version__,
+        "python": platform.python_version(),
+        "planner": metadata.version("up-fast-downward"),
+        "grammar": digest.hexdigest()[:16],
+    }
+
+
+class _LogWatch:
+    """Tells when a log can't be kept, and halts the run then where that is wanted."""
+
+    def __init__(self, log: LogWriter, halts: bool) -> None:
+        self._log = log
+        self._halts = halts
+        self._told: set[str] = set()
+
+    def news(self) -> Iterable[str]:
+        """What hasn't been told yet, in sentences."""
+        then = "The run halts." if self._halts else "The run goes on without it."
+        for text, more in ((self._log.failure, then), (self._log.lost, "")):
+            if text and text not in self._told:
+                self._told.add(text)
+                yield f"{text} {more}".strip()
+
+    def over(self, robot: Robot) -> Robot:
+        """The robot, at fault from the moment when its log can't be written, where that is wanted."""
+        return _Logged(robot, self._log) if self._halts else robot
+
+
+class _Logged:
+    """A robot that counts as at fault when its log can't be written."""
+
+    def __init__(self, robot: Robot, log: LogWriter) -> None:
+        self._robot = robot
+        self._log = log
+        self.name = robot.name
+        self.missing, self.advance, self.command = robot.missing, robot.advance, robot.command
+        self.reports, self.close = robot.reports, robot.close
+
+    def observe(self) -> Observation:
+        """What the robot perceives."""
+        found = self._robot.observe()
+        if not self._log.failure or not found.health.ready:
+            return found
+        why = "the log can't be written any more; make room on the disk first"
+        return replace(found, health=Health("fault", why))

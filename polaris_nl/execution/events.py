@@ -120,7 +120,12 @@ class Planned(Event):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunStarted(Event):
-    """The robot starts to carry a program out, after a yes; `resumed` is where an earlier run had come to."""
+    """The robot starts to carry a program out, after a yes.
+
+    Attributes:
+        resumed: where an earlier run had come to.
+        segments: the plan that is followed: of each segment the transition, goals and actions.
+    """
 
     topic: ClassVar[str] = "/polaris/run"
 
@@ -128,6 +133,7 @@ class RunStarted(Event):
     program: dict[str, Any] = field(default_factory=dict)
     beliefs: list[str] = field(default_factory=list)
     resumed: dict[str, Any] = field(default_factory=dict)
+    segments: list[dict[str, Any]] = field(default_factory=list)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

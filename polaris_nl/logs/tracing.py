@@ -49,6 +49,7 @@ class Tracer:
         self._last: dict[type[Event], int] = {}
         self._changed: dict[str, int] = {}
         self._goals: dict[int, int] = {}
+        self._aims: tuple[str, ...] = ()
         self._revisions: dict[int, int] = {}
         self._progress = self._words = self._question = self._trouble = self._latest = 0
         self._health = self._stop = 0
@@ -82,6 +83,7 @@ class Tracer:
                 yield self._goals.get(event.goal, 0)
             case GoalConfirmed():
                 yield self._goals.get(event.goal, 0)
+                yield from self._made(self._aims)
             case Skipped():
                 yield self._progress
                 yield from self._made(event.literals)
@@ -139,6 +141,7 @@ class Tracer:
                 self._changed = dict.fromkeys(event.beliefs, number)
             case GoalSent():
                 self._goals[event.goal] = number
+                self._aims = tuple(event.literals)
                 self._trouble = 0
             case RobotReported() if event.report in _TROUBLE:
                 self._trouble = number

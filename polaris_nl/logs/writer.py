@@ -331,7 +331,7 @@ class LogWriter:
         self._disk.since = time.monotonic()
         try:
             self._journal.force()
-        except OSError:
+        except OSError as error:
             if not self._closed:
                 self._fail(error)
         finally:
