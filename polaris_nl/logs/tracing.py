@@ -48,6 +48,7 @@ class Tracer:
         self._number = 0
         self._last: dict[type[Event], int] = {}
         self._changed: dict[str, int] = {}
+        self._authored: dict[str, tuple[str, int]] = {}
         self._goals: dict[int, int] = {}
         self._aims: tuple[str, ...] = ()
         self._revisions: dict[int, int] = {}
@@ -90,6 +91,8 @@ class Tracer:
             case TransitionTaken():
                 yield self._progress
                 yield from self._made(event.when)
+                for name in (event.transition, event.target):
+                    yield self._authored.get(name, ("", 0))[1]
             case Observed():
                 yield from self._people(event)
             case StateChanged() | Said():
@@ -135,6 +138,7 @@ class Tracer:
                 self._words = number if asked else 0  # A yes leads to the run that follows.
             case Edited():
                 self._revisions[event.revision] = number
+                self._authors(event, number)
             case RunStarted():
                 self._forget()
                 self._progress = number
@@ -155,6 +159,14 @@ class Tracer:
                 self._changed |= dict.fromkeys(told, number)
                 if isinstance(event, CommandGiven) and event.command == "stop":
                     self._stop = number
+
+    def _authors(self, event: Edited, number: int) -> None:
+        """Keeps who made each checkpoint and transition what it is."""
+        for part in ("checkpoints", "transitions"):
+            for value in event.program.get(part, ()):
+                text = str(sorted(value.items()))
+                if self._authored.get(value["id"], ("", 0))[0] != text:
+                    self._authored[value["id"]] = text, number
 
     def _forget(self) -> None:
         """A new run begins."""
