@@ -27,6 +27,7 @@ from polaris_nl.logs.privacy import KEEP_ALL, Privacy
 from polaris_nl.logs.reader import read_log
 from polaris_nl.logs.writer import LogSettings, LogWriter, attachments_of
 from polaris_nl.model.domain import Domain
+from polaris_nl.model.errors import RunError
 from polaris_nl.planning.plan_json import plan_json
 from polaris_nl.planning.planner import Planner
 from polaris_nl.planning.result import BranchingPlan
@@ -130,6 +131,9 @@ def run_on(
                 )
             finally:
                 robot.close()
+        except RunError as error:
+            log.write(Failed(time=clock.now(), text=str(error), what="run"))
+            raise
         finally:
             replanner.close()
     return RunReport(result, path, log.failure or log.lost)

@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 from polaris_nl.execution.events import (
     CheckpointReached,
@@ -17,7 +18,6 @@ from polaris_nl.execution.events import (
     Deviated,
     Edited,
     Event,
-    GoalConfirmed,
     GoalSent,
     Halted,
     Heard,
@@ -84,9 +84,13 @@ def _why_end(events: Events, words: str, wording: Wording | None) -> Reply:
     ended = _last(events, Halted) or _last(events, RunEnded)
     found = diagnoses(events)
     if ended is None:
-        return Reply(f"{found[-1].what} {found[-1].why}" if found else "There is no run in this log.")
+        return Reply(
+            f"{found[-1].what} {found[-1].why}" if found else "There is no run in this log."
+        )
     if isinstance(ended, RunEnded) and ended.outcome == "done":
-        return Reply("It didn't halt: the program was carried out to its end.", _of(events, ended), ended.id)
+        return Reply(
+            "It didn't halt: the program was carried out to its end.", _of(events, ended), ended.id
+        )
     right = [d for d in found if d.number == ended.id]
     text = f"{right[-1].what} {right[-1].why}" if right else clause(ended, wording)
     return Reply(text.strip(), _of(events, ended), ended.id)
@@ -104,7 +108,9 @@ def _why_else(events: Events, words: str, wording: Wording | None) -> Reply:
         if isinstance(e, TransitionTaken) and not e.when and any(outgoing.get(e.source, ()))
     ]
     if not taken:
-        return Reply("It took no else branch: no transition without a condition stands beside others.")
+        return Reply(
+            "It took no else branch: no transition without a condition stands beside others."
+        )
     event = _best(taken, words)
     others = [facts(when, wording) for when in outgoing[event.source] if when]
     text = (
@@ -121,7 +127,9 @@ def _waited(events: Events, words: str, wording: Wording | None) -> Reply:
     event = _best(found, words)
     span = next((s for s in spans(events) if s.number == event.id), None)
     took = f" It waited for {span.seconds:.1f} s" if span else ""
-    end = next((e for e in events if e.id > event.id and isinstance(e, TransitionTaken | Halted)), None)
+    end = next(
+        (e for e in events if e.id > event.id and isinstance(e, TransitionTaken | Halted)), None
+    )
     until = f"{took}, until: {clause(end, wording)}" if took and end else f"{took}." if took else ""
     return Reply(f"{event.text}{until}", _of(events, event), event.id)
 
@@ -172,9 +180,9 @@ def _said_what(events: Events, words: str, wording: Wording | None) -> Reply:
 
 def _why_event(events: Events, words: str, wording: Wording | None) -> Reply:
     """Why something was done: the event whose sentence shares most with the question."""
-    kinds = (
+    kinds: tuple[type[Event], ...] = (
         GoalSent, TransitionTaken, Replanned, Skipped, CheckpointReached, Deviated, Waiting,
-        Planned, Edited, Halted, GoalConfirmed,
+        Planned, Edited, Halted,
     )  # fmt: skip
     number = re.search(r"\bevent (\d+)\b", words)
     if number:
@@ -209,7 +217,10 @@ def said_words(event: Event) -> str:
 
 _QUESTIONS: tuple[tuple[str, Callable[[Events, str, Wording | None], Reply]], ...] = (
     (r"\belse\b|\botherwise\b|the other branch", _why_else),
-    (r"\bwhy\b.*\b(halt|stop|end|fail|abort|give up|not finish|not done)|what went wrong", _why_end),
+    (
+        r"\bwhy\b.*\b(halt|stop|end|fail|abort|give up|not finish|not done)|what went wrong",
+        _why_end,
+    ),
     (r"\b(wait|waited|waiting)\b", _waited),
     (r"^how long", _how_long),
     (r"what (happened|became|was done) (to|of|with)\b", _happened_to),
@@ -219,8 +230,27 @@ _QUESTIONS: tuple[tuple[str, Callable[[Events, str, Wording | None], Reply]], ..
 )
 
 _STOP = frozenset(
-    "why did does do the a an it robot to of in at on is was for go went take took bring its you i and"
-    " then first last time how long what branch transition step".split()
+    (
+        *("why", "did", "does", "do", "how", "long", "what", "was", "first", "last", "time"),
+        *(
+            "a",
+            "an",
+            "the",
+            "it",
+            "its",
+            "you",
+            "i",
+            "robot",
+            "of",
+            "in",
+            "at",
+            "on",
+            "to",
+            "for",
+            "is",
+        ),
+        *("and", "then", "go", "went", "take", "took", "bring", "branch", "transition", "step"),
+    )
 )
 
 
@@ -236,7 +266,10 @@ def _stem(word: str) -> str:
     return re.sub(r"(ing|ed|es|s)$", "", word) if len(word) > 4 else word
 
 
-def _best(found: Sequence[Event], words: str) -> Event:
+E = TypeVar("E", bound=Event)
+
+
+def _best(found: Sequence[E], words: str) -> E:
     """The event that a question is about: most words shared; then "first", else the last."""
     asked = _shared(words, _STOP)
     most = max(len(asked & _tokens(said_words(e))) for e in found)

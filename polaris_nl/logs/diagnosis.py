@@ -27,7 +27,7 @@ from polaris_nl.execution.events import (
 
 Kind = OneOf[
     "robot", "refused", "gave-up", "no-answer", "too-slow", "not-as-reported", "undone", "moved",
-    "unseen", "nobody-came", "doubtful", "nobody-resumed", "unsettled", "stopped", "no-end",
+    "unseen", "nobody-came", "too-short", "doubtful", "nobody-resumed", "unsettled", "stopped", "no-end",
     "failure", "not-understood",
 ]  # fmt: skip
 
@@ -45,11 +45,15 @@ ADVICE: Mapping[Kind, str] = {
     "moved": "Somebody or something else changed this; the plan counted on it.",
     "unseen": "It wasn't seen any more, neither so nor otherwise: see what stands before the camera.",
     "nobody-came": "Nobody did what the program waited for. An else branch says what to do then.",
+    "too-short": "It was seen, but never for long enough to count.",
     "doubtful": "What was seen of it contradicted itself, so it counted neither as so nor as not so.",
     "nobody-resumed": "It stayed in its pause.",
     "unsettled": "Things were out of place too often on the way to one checkpoint.",
     "stopped": "",
-    "no-end": "The log ends in the middle of the run: the program was ended from outside.",
+    "no-end": (
+        "The log ends in the middle of the run: the program was ended from outside, or the disk was"
+        " full. What was begun goes on with run --resume."
+    ),
     "failure": "",
     "not-understood": "",
 }
@@ -103,10 +107,9 @@ def diagnoses(events: Sequence[Event]) -> list[Diagnosis]:
     return found
 
 
-def _made(
-    kind: Kind, event: Event, what: str, health: str = "", mended: bool = False
-) -> Diagnosis:
-    return Diagnosis(kind, event.id, what, ADVICE[kind], health, mended)
+def _made(kind: Kind, event: Event, what: str, health: str = "", mended: bool = False) -> Diagnosis:
+    why = "" if mended and kind == "gave-up" else ADVICE[kind]
+    return Diagnosis(kind, event.id, what, why, health, mended)
 
 
 def _of_halt(halted: Halted, before: Sequence[Event]) -> tuple[Kind, str]:
@@ -119,7 +122,7 @@ def _of_halt(halted: Halted, before: Sequence[Event]) -> tuple[Kind, str]:
     report = next((e.report for e in reversed(before) if isinstance(e, RobotReported)), "")
     match phase:
         case "waiting":
-            return ("doubtful" if _in_doubt(halted, before) else "nobody-came"), ""
+            return _of_wait(halted, before), ""
         case "deviating":
             return _of_deviation(halted.expected, halted.observed, before), ""
         case "paused":
@@ -141,8 +144,7 @@ def _of_deviation(
         reports = [e.report for e in before if isinstance(e, RobotReported) and e.goal == goal.goal]
         confirmed = any(isinstance(e, GoalConfirmed) and e.goal == goal.goal for e in before)
         if "succeeded" in reports and not confirmed:
-            unseen = not observed and not _seen_gone(expected, before)
-            return "unseen" if unseen and _stale(expected, before) else "not-as-reported"
+            return "unseen" if not observed and _stale_since(goal, before) else "not-as-reported"
     if set(expected) & _brought_about(before):
         return "undone"
     return "moved" if observed or _seen_gone(expected, before) else "unseen"
@@ -160,19 +162,23 @@ def _seen_gone(expected: Sequence[str], before: Sequence[Event]) -> bool:
     return any(isinstance(e, Observed) and set(expected) & set(e.removed) for e in before)
 
 
-def _stale(expected: Sequence[str], before: Sequence[Event]) -> bool:
-    return any(isinstance(e, Observed) and set(expected) & set(e.stale) for e in before)
+def _stale_since(goal: GoalSent, before: Sequence[Event]) -> bool:
+    """Whether things were out of sight while a goal was pursued."""
+    later = (e for e in before if e.time >= goal.time)
+    return any(isinstance(e, Observed) and e.stale for e in later)
 
 
-def _in_doubt(halted: Halted, before: Sequence[Event]) -> bool:
-    """Whether what was waited for was seen while the robot waited, and not for long enough."""
+def _of_wait(halted: Halted, before: Sequence[Event]) -> Kind:
+    """Whether what was waited for was never seen, not for long enough, or in contradiction."""
     began = max(
         (n for n, e in enumerate(before) if isinstance(e, StateChanged) and e.after == "waiting"),
         default=0,
     )
     seen = [e for e in before[began:] if isinstance(e, Observed)]
     wanted = set(halted.expected)
-    return any(wanted & {*e.added, *e.stale} for e in seen)
+    if any(wanted & set(e.stale) for e in seen):
+        return "doubtful"
+    return "too-short" if any(wanted & set(e.added) for e in seen) else "nobody-came"
 
 
 def _mended(event: Deviated, later: Sequence[Event]) -> bool:

@@ -7,7 +7,7 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 from polaris_nl.logs.compacting import Compactor
 from polaris_nl.logs.framing import MAGIC
@@ -43,18 +43,29 @@ def compact(source: Path, target: Path) -> Compactor:
         OSError: the target can't be written.
         LogError: the source can't be read.
     """
+    with content(source) as data, written(target) as out:
+        compactor = Compactor(out)
+        compactor.take(pieces(data))
+        compactor.finish()
+    return compactor
+
+
+@contextmanager
+def written(target: Path) -> Iterator[IO[bytes]]:
+    """A file that is put into its place once it is whole and on the disk.
+
+    Raises:
+        OSError: it can't be written.
+    """
     temporary = target.with_name(f".{target.name}.new")
     try:
-        with content(source) as data, temporary.open("wb", buffering=1 << 20) as out:
-            compactor = Compactor(out)
-            compactor.take(pieces(data))
-            compactor.finish()
+        with temporary.open("wb", buffering=1 << 20) as out:
+            yield out
             out.flush()
             os.fsync(out.fileno())
         temporary.replace(target)
     finally:
         temporary.unlink(missing_ok=True)
-    return compactor
 
 
 @contextmanager

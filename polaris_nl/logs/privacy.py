@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -82,6 +82,12 @@ class Privacy:
 
 
 KEEP_ALL = Privacy()
+
+
+def privacy_of(names: Sequence[str]) -> Privacy:
+    """What a user wants left out: `audio`, `text`, and other words as they are."""
+    words = tuple(name for name in names if name not in ("audio", "text") and name)
+    return Privacy("audio" not in names, "text" not in names, words) if names else KEEP_ALL
 
 
 def _is_spoken(event: Event, name: str) -> bool:

@@ -15,7 +15,7 @@ from polaris_nl.execution.events import (
     RobotReported,
     StateChanged,
 )
-from polaris_nl.model.errors import FormatError
+from polaris_nl.model.errors import PolarisError
 from polaris_nl.model.formula import parse_literal
 from polaris_nl.model.text import capital, listed, sentence
 from polaris_nl.model.wording import Wording
@@ -74,7 +74,9 @@ def _observed(event: Observed, wording: Wording | None) -> str:
     if event.stale:
         parts.append(f"Not seen for a while: {facts(event.stale, wording)}.")
     if event.health is not None:
-        parts.append("The robot is ready." if event.health == "ready" else f"The robot: {event.health}.")
+        parts.append(
+            "The robot is ready." if event.health == "ready" else f"The robot: {event.health}."
+        )
     return " ".join(parts) or "Nothing new is seen."
 
 
@@ -93,7 +95,7 @@ def fact(text: str, wording: Wording | None) -> str:
         return text
     try:
         return wording.fact(parse_literal(text))
-    except (FormatError, KeyError, ValueError):
+    except (PolarisError, KeyError, ValueError):
         return text
 
 
