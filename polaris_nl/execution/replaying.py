@@ -139,10 +139,8 @@ def segments_json(plan: BranchingPlan) -> list[dict[str, Any]]:
 
 
 def _bare(event: Event) -> Event:
-    """An event without its words; the run's length is measured outside the core."""
-    bare = replace(event, text="")
-    if isinstance(bare, RunEnded):
-        bare = replace(bare, seconds=0.0, reason="")
-    if isinstance(bare, Halted | StateChanged):
-        bare = replace(bare, reason="")
-    return bare
+    """An event without its words, and without a run's length, which is measured outside the core."""
+    words = {"text": "", "reason": "", "seconds": 0.0}
+    if not isinstance(event, RunEnded):
+        del words["seconds"]
+    return replace(event, **{name: x for name, x in words.items() if hasattr(event, name)})  # type: ignore[arg-type]

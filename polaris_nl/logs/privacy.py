@@ -42,6 +42,11 @@ class Privacy:
             [*kinds, *([f"{count} words" if count > 1 else "a word"] if count else [])]
         )
 
+    @property
+    def sound(self) -> bool:
+        """Whether sound is kept; not where there are words to be left out, as nobody can search it."""
+        return self.audio and not self.never
+
     def of_event(self, event: Event) -> Event:
         """An event without what isn't kept."""
         if self.text and not self.never:

@@ -107,8 +107,8 @@ class _Redaction:
             self._topics[record.id] = record.topic
         elif isinstance(record, Attachment):
             if record.media_type.startswith(AUDIO):
-                if not self._privacy.audio or self._privacy.never:
-                    self.left_out += 1  # What words a sound holds, nobody can search.
+                if not self._privacy.sound:
+                    self.left_out += 1
                     return None
                 return piece
             if self._privacy.in_bytes(record.data) or self._privacy.in_bytes(record.name.encode()):

@@ -130,7 +130,7 @@ def _stop(data: Any, at: int, end: int, known: set[int]) -> int:
     if end - at < HEAD or data[at] not in OPCODES:
         return 0
     stop: int = at + HEAD + _LENGTH.unpack_from(data, at + 1)[0]
-    if stop > end or not (stop == end or _likely(data, stop, end)):
+    if stop > end or not (stop == end or _likely(data, stop, end) or _is_json(data, at, stop)):
         return 0
     if data[at] == MESSAGE and (
         stop - at < HEAD + MESSAGE_HEAD or _CHANNEL.unpack_from(data, at + HEAD)[0] not in known
@@ -144,6 +144,12 @@ def _likely(data: Any, at: int, end: int) -> bool:
     if data[at] not in OPCODES:
         return data[at : at + len(MAGIC)] == MAGIC and at + len(MAGIC) == end
     return end - at < HEAD or data[at + 5 : at + HEAD] == b"\0\0\0\0"
+
+
+def _is_json(data: Any, at: int, stop: int) -> bool:
+    """Whether a record is a message that begins and ends as JSON objects do, whatever follows it."""
+    start = at + HEAD + MESSAGE_HEAD
+    return bool(data[at] == MESSAGE and data[start : start + 1] == b"{" and data[stop - 1] == 0x7D)
 
 
 def _next(data: Any, at: int, end: int, known: set[int]) -> int:

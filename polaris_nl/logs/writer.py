@@ -44,6 +44,7 @@ SCHEMA = "polaris-log/1"
 FORCED: tuple[type[Event], ...] = (Edited, GoalSent, GoalConfirmed, Halted, RunStarted, RunEnded)
 """Events after which the file is forced to the disk, so that even a power cut keeps them."""
 AUDIO = "audio/"
+_UNCHANGED: tuple[object, ...] = (None, [], 0)
 _encode = json.JSONEncoder(ensure_ascii=False, separators=(",", ":")).encode
 
 
@@ -160,6 +161,8 @@ class LogWriter:
         Returns:
             Whether it is in the file, as for `write`.
         """
+        if self._settings.privacy.in_bytes(data):
+            return False
         return self._hand_over(lambda: self._write_raw(topic, kind, time, data), topic, True)
 
     def attach(self, name: str, kind: str, data: bytes, time: float) -> bool:
@@ -174,7 +177,7 @@ class LogWriter:
         Returns:
             Whether it is in the log; also False where sound isn't to be kept.
         """
-        if kind.startswith(AUDIO) and not self._settings.privacy.audio:
+        if kind.startswith(AUDIO) and not self._settings.privacy.sound:
             return False
         nanoseconds = max(int(time * 1e9), 0)
         return self._hand_over(
@@ -209,7 +212,10 @@ class LogWriter:
         """Does what appends a record now, or queues it where that could take long."""
         since = self._disk.since
         busy = since is not None and time.monotonic() - since > self._settings.slow_s
-        if not busy and self._lock.acquire(timeout=self._settings.patience_s):
+        if not busy and (
+            self._lock.acquire(blocking=False)
+            or self._lock.acquire(timeout=self._settings.patience_s)
+        ):
             try:
                 if not self._backlog:  # Else it would overtake what waits.
                     return not self._closed and self._done(work)
@@ -247,7 +253,9 @@ class LogWriter:
         nanoseconds = max(int(event.time * 1e9), 0)
         value = {name: getattr(event, name) for name in names_of(type(event))}
         self._turn_over(nanoseconds)
-        if not isinstance(event, Stepped):
+        if isinstance(event, Stepped):  # In most steps nothing has changed.
+            value = {name: x for name, x in value.items() if x not in _UNCHANGED}
+        else:
             value["id"], value["causes"] = self._tracer.take(event)
             self.count += 1
         data = _encode(value).encode("utf-8", "backslashreplace")
