@@ -7,7 +7,7 @@ import os
 import platform
 import sys
 
-from bench import command, execution, language, logs, planning, speech, tui
+from bench import command, execution, language, logs, planning, robot, speech, tui
 from bench.table import show
 
 PARTS = {
@@ -18,6 +18,7 @@ PARTS = {
     "execution": execution,
     "logs": logs,
     "tui": tui,
+    "robot": robot,
 }
 
 

@@ -2,35 +2,34 @@
 
 from __future__ import annotations
 
-import hashlib
-import platform
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import asdict, dataclass, field, replace
-from importlib import metadata
+from contextlib import closing, suppress
+from dataclasses import dataclass, field
 from pathlib import Path
 
-from polaris_nl import __version__
 from polaris_nl.automaton.automaton import Automaton
 from polaris_nl.automaton.program import Program, program_json
-from polaris_nl.execution.backend import Health, Observation, Robot
+from polaris_nl.execution.backend import Robot
 from polaris_nl.execution.clock import Clock, RealClock, VirtualClock
-from polaris_nl.execution.events import Event, Failed, Planned
+from polaris_nl.execution.durations import LEARNED_FROM
+from polaris_nl.execution.durations_file import learn
+from polaris_nl.execution.events import Event, Failed, Planned, RunStarted
 from polaris_nl.execution.replanner import InlineReplanner, Replanner, ThreadedReplanner
 from polaris_nl.execution.resuming import ResumePoint, resume_point
 from polaris_nl.execution.runner import RunResult, run
 from polaris_nl.execution.settings import RunSettings
-from polaris_nl.execution.simulation import SimulatedRobot, SimulationSettings
+from polaris_nl.execution.simulation import SimulatedRobot
+from polaris_nl.execution.simulation_settings import SimulationSettings
 from polaris_nl.execution.state import HumanCommand, RunPlan
-from polaris_nl.language.grammar import grammar_folder, grammar_path
 from polaris_nl.logs.paths import new_log_path
 from polaris_nl.logs.privacy import KEEP_ALL, Privacy
 from polaris_nl.logs.reader import read_log
-from polaris_nl.logs.writer import LogSettings, LogWriter, attachments_of
-from polaris_nl.model.domain import Domain
-from polaris_nl.model.errors import RunError
+from polaris_nl.logs.writer import LogSettings, LogWriter
+from polaris_nl.model.errors import FileError, RunError
 from polaris_nl.planning.plan_json import plan_json
 from polaris_nl.planning.planner import Planner
 from polaris_nl.planning.result import BranchingPlan
+from polaris_nl.run_logs import LogWatch, run_attachments
 
 
 @dataclass(frozen=True)
@@ -98,26 +97,28 @@ def run_on(
         RunError: there is no yes, nothing to run, or a robot that can't do it; nothing has moved.
         LogError: the log can't be made.
     """
-    planner = order.planner
-    now = clock.now()
+    planner, now = order.planner, clock.now()
     path = order.log or new_log_path(planner.world.name)
     plan = RunPlan(order.automaton, order.plan, planner.world, planner.wording, order.settings)
-    keeping = LogSettings(privacy=order.privacy)
-    with LogWriter(path, _attachments(order), keeping) as log:
-        watch = _LogWatch(log, order.halt_without_log)
+    kept: list[Event] = []
+    try:
+        with LogWriter(path, attachments(order), LogSettings(privacy=order.privacy)) as log:
+            watch = LogWatch(log, order.halt_without_log)
 
-        def sink(event: Event) -> None:
-            log.write(event)
-            show(event)
-            for text in watch.news():
-                show(Failed(time=event.time, text=text, what="log"))
+            def sink(event: Event) -> None:
+                log.write(event)
+                show(event)
+                if isinstance(event, (RunStarted, *LEARNED_FROM)):
+                    kept.append(event)
+                for text in watch.news():
+                    show(Failed(time=event.time, text=text, what="log"))
 
-        for event in _before(order, now):
-            log.write(event)
-        replanner = _replanner(planner, clock)
-        try:
-            robot = connect(log, sink, now)
-            try:
+            for event in _before(order, now):
+                log.write(event)
+            with (
+                closing(_replanner(planner, clock)) as replanner,
+                closing(connect(log, sink, now)) as robot,
+            ):
                 result = run(
                     plan,
                     watch.over(robot),
@@ -126,16 +127,17 @@ def run_on(
                     sink=sink,
                     commands=commands,
                     replanner=replanner,
-                    resume=order.resume.state if order.resume else None,
+                    resume=order.resume,
                     record=log.write,
                 )
-            finally:
-                robot.close()
-        except RunError as error:
-            log.write(Failed(time=clock.now(), text=str(error), what="run"))
-            raise
-        finally:
-            replanner.close()
+    except RunError:
+        if not kept:
+            path.unlink(missing_ok=True)  # Of a run that never began there is nothing to read.
+        raise
+    if not isinstance(clock, VirtualClock):
+        # It serves later plans alone; that it can't be kept is no matter of this run.
+        with suppress(FileError):
+            learn(planner.world, kept)
     return RunReport(result, path, log.failure or log.lost)
 
 
@@ -168,6 +170,7 @@ def run_simulated(
             sink=sink,
             start=now,
             state=order.resume.beliefs if order.resume else None,
+            acted=order.resume.acted if order.resume else (),
         )
 
     real = RealClock()
@@ -200,63 +203,8 @@ def _before(order: RunOrder, now: float) -> Iterable[Event]:
         yield Planned(time=now, revision=0, status=order.plan.status, plan=plan, ms=order.plan.ms)
 
 
-def _attachments(order: RunOrder) -> Mapping[str, str]:
+def attachments(order: RunOrder) -> Mapping[str, str]:
+    """What makes an order's log explain itself."""
     world = order.planner.world
     program = program_json(Program(order.automaton, world.domain.name, world.name))
-    settings = {"run": asdict(order.settings), "versions": versions(world.domain)}
-    return attachments_of(program, world.domain.source, world.source, settings)
-
-
-def versions(domain: Domain) -> dict[str, str]:
-    """What a run depends on besides its program: of programs the versions, of grammars a hash."""
-    files = sorted(grammar_folder().rglob("*.yaml"))
-    own = grammar_path(domain)
-    digest = hashlib.sha256()
-    for path in (*files, *([own] if own is not None and own not in files else [])):
-        digest.update(path.read_bytes())
-    return {
-        "polaris-nl": __version__,
-        "python": platform.python_version(),
-        "planner": metadata.version("up-fast-downward"),
-        "grammar": digest.hexdigest()[:16],
-    }
-
-
-class _LogWatch:
-    """Tells when a log can't be kept, and halts the run then where that is wanted."""
-
-    def __init__(self, log: LogWriter, halts: bool) -> None:
-        self._log = log
-        self._halts = halts
-        self._told: set[str] = set()
-
-    def news(self) -> Iterable[str]:
-        """What hasn't been told yet, in sentences."""
-        then = "The run halts." if self._halts else "The run goes on without it."
-        for text, more in ((self._log.failure, then), (self._log.lost, "")):
-            if text and text not in self._told:
-                self._told.add(text)
-                yield f"{text} {more}".strip()
-
-    def over(self, robot: Robot) -> Robot:
-        """The robot, at fault from the moment when its log can't be written, where that is wanted."""
-        return _Logged(robot, self._log) if self._halts else robot
-
-
-class _Logged:
-    """A robot that counts as at fault when its log can't be written."""
-
-    def __init__(self, robot: Robot, log: LogWriter) -> None:
-        self._robot = robot
-        self._log = log
-        self.name = robot.name
-        self.missing, self.advance, self.command = robot.missing, robot.advance, robot.command
-        self.reports, self.close = robot.reports, robot.close
-
-    def observe(self) -> Observation:
-        """What the robot perceives."""
-        found = self._robot.observe()
-        if not self._log.failure or not found.health.ready:
-            return found
-        why = "the log can't be written any more; make room on the disk first"
-        return replace(found, health=Health("fault", why))
+    return run_attachments(program, world, order.settings)

@@ -93,9 +93,10 @@ class Session:
     @cached_property
     def planner(self) -> Planner:
         """The planning side."""
+        from polaris_nl.execution.durations_file import learned
         from polaris_nl.planning.planner import Planner
 
-        return Planner(self.world, self.wording)
+        return Planner(self.world, self.wording, learned(self.world))
 
     @property
     def wording(self) -> Wording:

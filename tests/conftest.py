@@ -41,6 +41,7 @@ def _own_home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
         "XDG_STATE_HOME": str(home / ".local/state"),
         "COLUMNS": "80",
         "NO_COLOR": "1",
+        "POLARIS_NL_DURATIONS": "off",
     }
     if "POLARIS_NL_MODEL" not in os.environ:
         changes["POLARIS_NL_MODEL"] = str(_MODEL_CACHE)

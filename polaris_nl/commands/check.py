@@ -10,15 +10,22 @@ from pathlib import Path
 from polaris_nl.automaton.program import read_program
 from polaris_nl.automaton.validation import validate
 from polaris_nl.commands.common import complain, print_json, print_text, shown_path, world_for
+from polaris_nl.execution.ros import profile as robot_profile
+from polaris_nl.execution.ros import skills as robot_skills
+from polaris_nl.execution.ros.profile import profile_for, profile_names, read_profile
+from polaris_nl.execution.ros.skills import read_skills
 from polaris_nl.interchange.isl_import import read_isl
 from polaris_nl.language.grammar_check import SCHEMAS, Findings, check_domain, check_grammar_file
 from polaris_nl.language.intents import INTENTS
 from polaris_nl.model.errors import FileError, FormatError, GrammarError, PolarisError
 from polaris_nl.model.pddl import read_domain
 from polaris_nl.model.problem import is_problem, read_problem
-from polaris_nl.model.text import listed
+from polaris_nl.model.text import capital, listed
 from polaris_nl.model.world_file import read_world
 from polaris_nl.model.yaml_lines import Lined, read_yaml
+
+SKILLS = robot_skills.SCHEMA.partition("/")[0]
+ROBOT = robot_profile.SCHEMA.partition("/")[0]
 
 
 @dataclass(frozen=True)
@@ -81,7 +88,8 @@ def _checked(path: Path) -> _Checked:
     if path.suffix in (".yaml", ".yml"):
         return _yaml(path)
     raise FileError(
-        f"{path} is neither a domain or problem (.pddl), world or grammar (.yaml) nor program (.json, .isl)."
+        f"{path} is neither a domain or problem (.pddl), world, grammar, skills or robot profile (.yaml), "
+        "nor program (.json, .isl)."
     )
 
 
@@ -101,22 +109,51 @@ def _pddl(path: Path) -> _Checked:
 
 
 def _yaml(path: Path) -> _Checked:
+    schema = _schema(path)
+    if schema == SKILLS:
+        return _skills(path)
+    if schema == ROBOT:
+        profile = read_profile(path)
+        return _Checked(f"a robot profile, {profile.title}")
     if _is_grammar(path):
         found = check_grammar_file(path)
         return _of(found.what, found)
     return _of("a world", check_domain(read_world(path).domain))
 
 
-def _is_grammar(path: Path) -> bool:
-    """Whether a file calls itself a grammar, or, without a schema, has the fields of one."""
+def _skills(path: Path) -> _Checked:
+    domain = read_domain(path.with_name("domain.pddl"))
+    skills = read_skills(path, domain)
+    warnings = [
+        f"{path}: {operator} has no skill, so no robot can do it."
+        for operator in domain.operators
+        if operator not in skills.by_operator
+    ]
+    for name in profile_names():
+        profile = profile_for(name)
+        unable = skills.missing(skills.by_operator, profile)
+        if unable:
+            warnings.append(f"{capital(profile.title)} has no means for: {listed(unable)}.")
+    return _Checked(f"skills for {domain.name}", warnings=tuple(warnings))
+
+
+def _fields(path: Path) -> dict[str, Lined]:
     try:
         root, _ = read_yaml(path)
     except FormatError as error:
         raise FormatError(error.reason, error.path or path, error.line) from error
-    fields = root.value if isinstance(root.value, dict) else {}
-    schema = fields.get("schema", Lined("", 1)).value
-    names = [known.partition("/")[0] for known in SCHEMAS]
-    if str(schema).partition("/")[0] in names:
+    return root.value if isinstance(root.value, dict) else {}
+
+
+def _schema(path: Path) -> str:
+    """The name of the schema that a file gives itself, without the version, or ""."""
+    return str(_fields(path).get("schema", Lined("", 1)).value or "").partition("/")[0]
+
+
+def _is_grammar(path: Path) -> bool:
+    """Whether a file calls itself a grammar, or, without a schema, has the fields of one."""
+    fields, schema = _fields(path), _schema(path)
+    if schema in [known.partition("/")[0] for known in SCHEMAS]:
         return True
     return not schema and not {"entities", "domain"} & fields.keys() and _grammar_fields(fields)
 

@@ -12,7 +12,7 @@ from importlib import metadata
 
 from polaris_nl import __version__
 from polaris_nl.commands.common import print_json, print_text
-from polaris_nl.model.errors import PolarisError
+from polaris_nl.model.errors import PolarisError, RunError
 from polaris_nl.render.glyphs import glyphs_for
 
 _PACKAGES = (
@@ -26,7 +26,6 @@ _PACKAGES = (
     ("vosk", "speech", False, 'pip install "polaris-nl[voice]"'),
     ("soundfile", "recordings", False, 'pip install "polaris-nl[voice]"'),
     ("sounddevice", "a microphone", False, 'pip install "polaris-nl[voice]"'),
-    ("ros-jazzy-rclpy", "a Stretch", False, 'pip install "polaris-nl[ros]"'),
 )
 
 
@@ -75,6 +74,7 @@ def _findings() -> Iterator[Finding]:
     yield _planner()
     yield _model()
     yield _microphone()
+    yield from _robot()
 
 
 def _planner() -> Finding:
@@ -105,3 +105,24 @@ def _microphone() -> Finding:
     found = microphones()
     mend = "Recordings work without one: listen --mic FILE.wav"
     return Finding("microphone", bool(found), ", ".join(found) or "none.", mend=mend)
+
+
+def _robot() -> Iterator[Finding]:
+    """ROS 2: a sourced installation wins over the wheels, since its packages come first."""
+    from polaris_nl.execution.ros.middleware import (
+        MESSAGES,
+        build_hint,
+        has_interface,
+        installation,
+    )
+
+    try:
+        found = installation()
+    except RunError as error:
+        yield Finding("ROS 2 (a Stretch)", False, str(error))
+        return
+    yield Finding("ROS 2 (a Stretch)", True, found.words)
+    for package in MESSAGES:
+        there = has_interface(package)
+        mend = build_hint(package)
+        yield Finding(f"{package} (a Stretch)", there, "there." if there else "missing.", mend=mend)

@@ -261,6 +261,13 @@ def _looking(adder: _Adder) -> None:
     adder.add(
         "worlds", "list the worlds that ship with Polaris NL", "polaris-nl worlds", "catalogue"
     )
+    durations = adder.add(
+        "durations",
+        "show how long actions took, which later plans take into account",
+        "polaris-nl durations --world care-home\n  polaris-nl durations --world care-home --reset",
+    )
+    _world(durations, required=True)
+    durations.add_argument("--reset", action="store_true", help="forget what was learned")
     check = adder.add(
         "check", "check domain, world, grammar and program files", "polaris-nl check my-world.yaml"
     )

@@ -92,6 +92,9 @@ def run(arguments: Namespace) -> int:
         if met:
             print_text(f"Objectives: {len(done)} of {len(met)} ({', '.join(done) or 'none'}).")
         print_text(f"The log can be read with: polaris-nl review {shown_path(report.log)}")
+        if result.outcome != "done":
+            again = f"{shown_path(arguments.program)} --resume {shown_path(report.log)}"
+            print_text(f"When things are put right, it goes on with: polaris-nl run {again}")
     return 0 if result.outcome == "done" and not report.failure else 1
 
 

@@ -100,9 +100,7 @@ def _saved(work: Work, literals: tuple[Literal, ...]) -> int:
     """How many actions needn't be done, since what they are for is so already."""
     done = work.state.done_actions
     rest = work.state.actions[done:]
-    segment = work.run.plan.segments[work.state.segment]
-    goals = tuple(x for x in segment.goals if x not in work.state.served)
-    saved = seen_shortcut(work.run.simulator, work.inputs.observation, rest, goals)
+    saved = seen_shortcut(work.run.simulator, work.inputs.observation, rest, work.wanted)
     so_already = bool(literals) and all(map(work.sees, literals))
     return max(saved, int(so_already))
 
@@ -118,7 +116,9 @@ def _skip(work: Work, count: int) -> None:
         if work.sees(x)
     )
     words = [work.run.wording.action(a) for a in skipped]
-    what = listed(words) if count <= _NAMED else f"{words[0]} and {count - 1} more"
+    what = listed(words)
+    if count > _NAMED:
+        what = f"{words[0]}, nor do the {count - 1} steps after that"
     work.events.append(
         Skipped(
             time=work.now,

@@ -57,7 +57,7 @@ def deviating(work: Work) -> None:
         if _taken_up(work, answer):
             return
     if work.elapsed >= work.run.settings.grace_s:
-        halt(work, work.expected_and_seen(missing), missing)
+        halt(work, f"{work.expected_and_seen(missing)}{_way_out(work, missing)}", missing)
     elif work.state.held != _NO_OTHER_WAY:
         _ask(work, missing)
 
@@ -86,11 +86,9 @@ def _ask(work: Work, missing: tuple[Literal, ...]) -> None:
     )
     if not settled or spent:
         return
-    segment = work.run.plan.segments[work.state.segment]
-    goals = tuple(x for x in segment.goals if x not in work.state.served)
     number = work.state.requests + 1
     work.note(
-        request=PlanRequest(number, state, goals),
+        request=PlanRequest(number, state, work.wanted),
         requests=number,
         replans=work.state.replans + 1,
     )
@@ -101,6 +99,8 @@ def _taken_up(work: Work, answer: PlanAnswer) -> bool:
     request = work.state.request
     if request is None or request.number != answer.number or answer.actions is None:
         return False
+    if work.insisted is not None and work.insisted not in answer.actions:
+        return False  # The same end by another way isn't what was asked for.
     if not _still_works(work, State(work.inputs.observation.state.facts), answer, request):
         return False
     old = work.state.actions[work.state.done_actions :]
@@ -138,6 +138,17 @@ def _still_works(work: Work, state: State, answer: PlanAnswer, request: PlanRequ
         return False
     end = steps[-1].state if steps else state
     return all(map(end.holds, request.goals))
+
+
+def _way_out(work: Work, missing: tuple[Literal, ...]) -> str:
+    """What the author can do where somebody has undone what the program had brought about."""
+    seen = [
+        x for x in work.instead(missing) if work.run.world.domain.people_can_change(x.predicate)
+    ]
+    if not seen or not work.state.word.intersection(missing):
+        return ""
+    until = work.run.wording.event(seen[0])
+    return f". Put that right and resume the run, or let the program wait until {until}"
 
 
 def _more(count: int) -> str:

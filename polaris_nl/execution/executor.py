@@ -15,8 +15,9 @@ from dataclasses import replace
 from polaris_nl.execution.acting import act, confirming, pursuing, sending
 from polaris_nl.execution.backend import Command, Report
 from polaris_nl.execution.deciding import decide, waiting
-from polaris_nl.execution.deviating import deviating
+from polaris_nl.execution.deviating import deviate, deviating
 from polaris_nl.execution.events import CommandGiven, Event, Replanned, RobotReported
+from polaris_nl.execution.expectations import needed
 from polaris_nl.execution.halting import halt, halting, stop, withdraw
 from polaris_nl.execution.state import (
     TERMINAL,
@@ -85,10 +86,27 @@ def _take_report(work: Work, report: Report) -> None:
             work.go("pursuing")  # The acceptance was lost on the way.
         work.note(reported_at=work.now)
     elif report.kind in ("failed", "cancelled"):
-        if work.state.retries >= work.run.settings.retries:
-            halt(work, f"the robot couldn't {work.action_words}{_because(report.reason)}")
-        else:
-            work.go("idle", "the robot gave the goal up", retries=work.state.retries + 1)
+        _given_up(work, report.reason)
+
+
+def _given_up(work: Work, reason: str) -> None:
+    """Has a goal that the robot gave up sent again, or looks at what is wrong with it."""
+    if work.state.retries < work.run.settings.retries:
+        work.go("idle", "the robot gave the goal up", retries=work.state.retries + 1)
+        return
+    action = work.state.action
+    assert action is not None
+    missing = tuple(
+        x
+        for x in needed(action, work.run.world.domain.operators[action.operator])
+        if work.sees(x.negation)
+    )
+    if missing:
+        # It isn't the robot's fault: the world isn't as the plan has it.
+        work.note(retries=0)
+        deviate(work, missing)
+    else:
+        halt(work, f"the robot couldn't {work.action_words}{_because(reason)}")
 
 
 def _take_new_way(work: Work, report: Report) -> None:

@@ -18,12 +18,14 @@ SEEN_AS = (*PLACES, "holding")
 
 def needed_places(action: Action, operator: Operator) -> tuple[Literal, ...]:
     """The places of objects that an action's precondition asks for."""
+    return tuple(x for x in needed(action, operator) if x.predicate in PLACES)
+
+
+def needed(action: Action, operator: Operator) -> tuple[Literal, ...]:
+    """The facts that an action's precondition asks for."""
     bound = bind(operator.precondition, operator.binding(action))
-    return tuple(
-        part
-        for part in conjuncts(bound)
-        if isinstance(part, Literal) and part.positive and part.predicate in PLACES
-    )
+    parts = (part for part in conjuncts(bound) if isinstance(part, Literal))
+    return tuple(part for part in parts if part.positive)
 
 
 def kept_goals(segment: Segment, world: World) -> tuple[Literal, ...]:

@@ -19,6 +19,7 @@ from polaris_nl.execution.events import (
     GoalConfirmed,
     GoalSent,
     Observed,
+    PersonActed,
     Replanned,
     RunEnded,
     RunStarted,
@@ -40,10 +41,12 @@ class ResumePoint:
     Attributes:
         state: what the executor goes on from.
         beliefs: what was believed to hold at the end of the log.
+        acted: what simulated people had done, each thing once.
     """
 
     state: ExecutorState
     beliefs: State
+    acted: tuple[str, ...] = ()
 
 
 def resume_point(
@@ -76,19 +79,25 @@ def resume_point(
     try:
         state, literals = state_of(first.resumed, plan), _literals(first.beliefs)
         beliefs = State(frozenset(literals))
+        acted, unseen = list(map(str, first.resumed.get("acted", ()))), list[str]()
         for event in rest:
             state = _after(state, event, plan)
             if isinstance(event, Observed):
                 beliefs = beliefs.change(_literals(event.removed), _literals(event.added))
+                # What somebody did and nobody saw is no part of the beliefs, so it is done again.
+                acted, unseen = [*acted, *unseen], []
+            elif isinstance(event, PersonActed):
+                unseen.append(event.action)
     except (FormatError, KeyError, TypeError, ValueError) as error:
         raise RunError(
             f"This log doesn't say where the run had come to ({error}); run the program anew."
         ) from error
-    return ResumePoint(state, beliefs)
+    return ResumePoint(state, beliefs, tuple(acted))
 
 
-def resumed_json(state: ExecutorState) -> dict[str, Any]:
+def resumed_json(point: ResumePoint) -> dict[str, Any]:
     """What `RunStarted.resumed` keeps, so that a run that was resumed can be resumed again."""
+    state = point.state
     return {
         "checkpoint": state.checkpoint,
         "reached": list(state.reached),
@@ -98,6 +107,7 @@ def resumed_json(state: ExecutorState) -> dict[str, Any]:
         "served": [str(x) for x in state.served],
         "word": [str(x) for x in sorted(state.word)],
         "goal": state.goal,
+        "acted": list(point.acted),
     }
 
 
@@ -135,13 +145,17 @@ def _after(state: ExecutorState, event: Event, plan: BranchingPlan) -> ExecutorS
         case TransitionTaken():
             return state.towards(plan.segments[event.target], _literals(event.when))
         case GoalSent():
+            # The plan that was carried out, which needn't be the one that is made of the program now.
+            state = state.on_another_way(tuple(map(parse_action, event.plan)))
             return replace(state, goal=event.goal, goal_literals=_literals(event.literals))
         case GoalConfirmed():
             return state.after_actions(1, state.goal_literals, plan.segments[state.segment])
         case Skipped():
-            return state.after_actions(
-                len(event.actions), _literals(event.literals), plan.segments[state.segment]
-            )
+            saved = tuple(map(parse_action, event.actions))
+            rest = state.actions[state.done_actions + len(saved) :]
+            state = state.on_another_way(saved + rest)
+            segment = plan.segments[state.segment]
+            return state.after_actions(len(saved), _literals(event.literals), segment)
         case Replanned() if event.segment:
             return state.on_another_way(tuple(map(parse_action, event.after)))
         case CheckpointReached():

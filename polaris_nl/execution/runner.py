@@ -13,7 +13,7 @@ from polaris_nl.execution.executor import step
 from polaris_nl.execution.inputs import Differences
 from polaris_nl.execution.replanner import NoReplanner, Replanner
 from polaris_nl.execution.replaying import segments_json
-from polaris_nl.execution.resuming import resumed_json
+from polaris_nl.execution.resuming import ResumePoint, resumed_json
 from polaris_nl.execution.state import (
     TERMINAL,
     ExecutorState,
@@ -59,7 +59,7 @@ def run(
     sink: Callable[[Event], None],
     commands: Callable[[], Iterable[HumanCommand]] = tuple,
     replanner: Replanner | None = None,
-    resume: ExecutorState | None = None,
+    resume: ResumePoint | None = None,
     record: Callable[[Stepped], object] = lambda step: None,
 ) -> RunResult:
     """Runs a program to its end.
@@ -85,8 +85,10 @@ def run(
     observation = robot.observe()
     if not observation.health.ready:
         raise RunError(f"The run doesn't start: {observation.health.words}.")
-    state = replace(resume or ExecutorState(), now=started, since=started)
+    state = replace(resume.state if resume else ExecutorState(), now=started, since=started)
     sink(_started(plan, robot, observation, resume, started))
+    if resume is not None:
+        robot.command(StopRobot())  # It may still be at the goal of an executor that is gone.
     differences = Differences(observation.state)
     going = _Going(
         plan, robot, clock, sink, commands, replanner or NoReplanner(), record, differences
@@ -210,13 +212,13 @@ def _started(
     plan: RunPlan,
     robot: Robot,
     observation: Observation,
-    resume: ExecutorState | None,
+    resume: ResumePoint | None,
     now: float,
 ) -> RunStarted:
     program = program_json(Program(plan.automaton, plan.world.domain.name, plan.world.name))
     text = "The run starts."
     if resume is not None:
-        text = f"The run goes on where it was interrupted: {_where(plan, resume)}."
+        text = f"The run goes on where it was interrupted: {_where(plan, resume.state)}."
     return RunStarted(
         time=now,
         text=text,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 
 from polaris_nl.model.state import Mutexes, State
 from polaris_nl.model.world import HumanAction, World
@@ -19,6 +19,7 @@ class People:
         mutexes: of actions whose effects exclude each other, the first is done.
         delay_s: the shortest and longest time that a person takes, in seconds.
         seed: makes the same run again.
+        acted: what they have done before.
     """
 
     def __init__(
@@ -28,12 +29,13 @@ class People:
         mutexes: Mutexes,
         delay_s: tuple[float, float],
         seed: int,
+        acted: Iterable[str] = (),
     ) -> None:
         self._willing = _willing(world, preferred, mutexes)
         self._delay_s = delay_s
         self._random = random.Random(seed)
         self._acts_at: dict[str, float] = {}
-        self._acted: set[str] = set()
+        self._acted = set(acted)
 
     def acting(self, state: Callable[[], State], now: float) -> Iterator[HumanAction]:
         """What people do now; each sees the state that the one before has made."""

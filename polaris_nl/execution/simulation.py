@@ -6,8 +6,8 @@ scheduled: it is the test double of the executor as well as the robot of `run --
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 
 from polaris_nl.execution.backend import (
     CancelGoal,
@@ -19,9 +19,10 @@ from polaris_nl.execution.backend import (
 )
 from polaris_nl.execution.events import Event, PersonActed
 from polaris_nl.execution.faults import Fault, Troubles
-from polaris_nl.execution.goals import Act, Arrived, GoalLimits, Lost, PlanTo, Pursuit
+from polaris_nl.execution.goals import Act, Arrived, Lost, PlanTo, Pursuit
 from polaris_nl.execution.simulated_people import People
 from polaris_nl.execution.simulated_senses import Senses
+from polaris_nl.execution.simulation_settings import SimulationSettings
 from polaris_nl.model.domain import Action
 from polaris_nl.model.evaluate import after, applicable
 from polaris_nl.model.formula import Literal
@@ -31,33 +32,6 @@ from polaris_nl.model.world import World
 
 LATE_S = 1.0
 """Seconds after a failure at which a late success is reported."""
-
-
-@dataclass(frozen=True, slots=True)
-class SimulationSettings:
-    """How the simulated world behaves.
-
-    Attributes:
-        action_s: how long an action takes, by operator; `default` for the others.
-        human_s: the shortest and longest time that a person takes to act, in seconds.
-        people: names of human actions that people prefer, or None for whatever the world lists
-            first.
-        seed: makes the same run again.
-        unable: operators that the robot has no skill for.
-        limits: how far the robot goes by itself for one goal.
-    """
-
-    action_s: Mapping[str, float] = field(default_factory=lambda: {"default": 2.0, "move": 4.0})
-    human_s: tuple[float, float] = (1.0, 3.0)
-    people: tuple[str, ...] | None = None
-    seed: int = 0
-    unable: tuple[str, ...] = ()
-    limits: GoalLimits = field(default_factory=GoalLimits)
-
-    def duration(self, action: Action | None) -> float:
-        """How long an action takes, in seconds."""
-        default = self.action_s.get("default", 1.0)
-        return self.action_s.get(action.operator, default) if action else default
 
 
 @dataclass(slots=True)
@@ -90,6 +64,7 @@ class SimulatedRobot:
         sink: is given what people do.
         start: the time of the start, in seconds.
         state: what is so at the start; the world's own start by default.
+        acted: what people have done before; each thing is done once.
     """
 
     name = "world"
@@ -104,13 +79,14 @@ class SimulatedRobot:
         sink: Callable[[Event], None] | None = None,
         start: float = 0.0,
         state: State | None = None,
+        acted: Iterable[str] = (),
     ) -> None:
         self.state = state or world.initial
         self._world = world
         self._mutexes = mutexes
         self._plan = plan
         self._settings = how = settings or SimulationSettings()
-        self._people = People(world, how.people, mutexes, how.human_s, how.seed)
+        self._people = People(world, how.people, mutexes, how.human_s, how.seed, acted)
         self._senses = Senses(world, mutexes, start)
         self._troubles = Troubles(faults, start)
         self._sink = sink or (lambda event: None)

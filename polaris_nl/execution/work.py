@@ -10,6 +10,8 @@ from polaris_nl.execution.backend import Command
 from polaris_nl.execution.events import Event, StateChanged
 from polaris_nl.execution.expectations import perceived_instead
 from polaris_nl.execution.state import ExecutorState, Inputs, Phase, RunPlan
+from polaris_nl.model.domain import Action
+from polaris_nl.model.evaluate import effects
 from polaris_nl.model.formula import Literal
 from polaris_nl.model.text import listed
 
@@ -58,6 +60,21 @@ class Work:
         return any(x not in self.state.told and self.sees(x.negation) for x in transition.when)
 
     @property
+    def insisted(self) -> Action | None:
+        """The action that the author insists on in the present segment, instead of goals, or None."""
+        return self.run.automaton.checkpoints[self.state.segment].action
+
+    @property
+    def wanted(self) -> tuple[Literal, ...]:
+        """What the present segment is still to bring about."""
+        action = self.insisted
+        if action is not None:
+            operator = self.run.world.domain.operators[action.operator]
+            return effects(action, operator, self.inputs.observation.state, self.run.world)
+        goals = self.run.plan.segments[self.state.segment].goals
+        return tuple(x for x in goals if x not in self.state.served)
+
+    @property
     def elapsed(self) -> float:
         """Seconds in the present phase."""
         return self.now - self.state.since
@@ -78,8 +95,10 @@ class Work:
 
     def expected_and_seen(self, expected: Sequence[Literal]) -> str:
         """Expected beside observed, as a clause."""
-        seen = self.facts(self.instead(expected))
-        return (
-            f"I expected that {self.facts(expected)}, but I see "
-            f"{f'that {seen}' if seen else 'nothing of it'}"
-        )
+        # That it holds the tray says that its hand isn't empty.
+        shown = [x for x in expected if x.positive] or list(expected)
+        words = f"I expected that {self.facts(shown)}"
+        if not any(map(self.inputs.observation.knows, shown)):
+            return f"{words}, but I can't see just now whether that is so"
+        seen = self.facts(self.instead(shown))
+        return f"{words}, but I see {f'that {seen}' if seen else 'nothing of it'}"

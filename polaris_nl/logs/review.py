@@ -17,8 +17,10 @@ from polaris_nl.execution.events import (
     Halted,
     Heard,
     Planned,
+    Replanned,
     RunEnded,
     RunStarted,
+    Skipped,
     TransitionTaken,
     Understood,
     Waiting,
@@ -103,6 +105,10 @@ def story(events: Sequence[Event]) -> list[str]:
     for event in events:
         if isinstance(event, GoalSent):
             lines.append(f"goal {event.action}")
+        elif isinstance(event, Skipped):
+            lines.append(f"saved {' '.join(event.actions)}")
+        elif isinstance(event, Replanned):
+            lines.append(f"planned anew: {' '.join(event.after)}")
         elif isinstance(event, TransitionTaken):
             lines.append(
                 f"transition {event.source} to {event.target} {' '.join(event.when)}".rstrip()

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from polaris_nl.model.formula import Literal
 from polaris_nl.model.state import State
+from polaris_nl.planning.costs import Extra, cost
 from polaris_nl.planning.memory import Memory
 from polaris_nl.planning.translate import END, Sas, SasOperator, Task
 
@@ -18,9 +19,17 @@ class Shared:
         sas: the translated task, or None where it can't be shared (axioms, conditional effects).
         facts: the state that it was translated from.
         asked: the predicates that some condition asks for.
+        extra: what actions cost, where they don't all cost the same.
     """
 
-    def __init__(self, sas: Sas | None, facts: frozenset[Literal], asked: frozenset[str]) -> None:
+    def __init__(
+        self,
+        sas: Sas | None,
+        facts: frozenset[Literal],
+        asked: frozenset[str],
+        extra: Extra,
+    ) -> None:
+        self._extra = extra
         self._sas = sas
         self._facts = facts
         self._asked = asked
@@ -63,7 +72,7 @@ class Shared:
         if any(aims[variable] in banned.pop(variable) for variable in aims.keys() & banned):
             return Task("")
         if banned:
-            return Task(_without(self._sas, banned).text(values, aims))
+            return Task(_without(self._sas, banned).text(values, aims, self._extra))
         if not aims:
             return None
         return Task(self._text(frozenset(aims)).with_values(values, aims))
@@ -101,7 +110,7 @@ class Shared:
         text = self._texts.get(aims)
         if text is None:
             assert self._sas is not None
-            text = _Text.of(self._sas, _needed(aims, self._causes))
+            text = _Text.of(self._sas, _needed(aims, self._causes), self._extra)
             self._texts.put(aims, text)
         return text
 
@@ -115,9 +124,11 @@ class _Text:
     tail: str = field(repr=False)
 
     @classmethod
-    def of(cls, sas: Sas, variables: Sequence[int]) -> _Text:
+    def of(cls, sas: Sas, variables: Sequence[int], extra: Extra) -> _Text:
         number = {variable: n for n, variable in enumerate(variables)}
-        head = ["begin_version\n3\nend_version\nbegin_metric\n0\nend_metric", str(len(variables))]
+        metric = int(bool(extra))
+        head = [f"begin_version\n3\nend_version\nbegin_metric\n{metric}\nend_metric"]
+        head.append(str(len(variables)))
         for variable, n in number.items():
             names = sas.names[variable]
             head.append(f"begin_variable\nvar{n}\n-1\n{len(names)}")
@@ -136,7 +147,9 @@ class _Text:
                 # A variable that something needed depends on is needed, so no condition is lost.
                 conditions = [f"{number[v]} {value}" for v, value in prevail if v in number]
                 tail.append(f"begin_operator\n{name}\n{len(conditions)}")
-                tail.extend((*conditions, str(len(kept)), *kept, "1\nend_operator"))
+                tail.extend(
+                    (*conditions, str(len(kept)), *kept, f"{cost(name, extra)}\nend_operator")
+                )
         count = sum(line.startswith("begin_operator") for line in tail)
         return cls(variables, "\n".join(head), "\n".join((str(count), *tail, "0", "")))
 
@@ -162,12 +175,12 @@ class _Without:
     sas: Sas
     aims: Mapping[int, int]
 
-    def text(self, values: Sequence[int], aims: Mapping[int, int]) -> str:
+    def text(self, values: Sequence[int], aims: Mapping[int, int], extra: Extra) -> str:
         """The search program's input from some values to some others."""
         wanted = {**aims, **self.aims}
         variables = _needed(wanted, _causes(self.sas))
         first = [*values, *(0 for _ in range(len(self.sas.names) - len(values)))]
-        return _Text.of(self.sas, variables).with_values(first, wanted)
+        return _Text.of(self.sas, variables, extra).with_values(first, wanted)
 
 
 def _without(sas: Sas, banned: Mapping[int, set[int]]) -> _Without:

@@ -11,6 +11,7 @@ from polaris_nl.model.wording import PlainWording, Wording
 from polaris_nl.model.world import World
 from polaris_nl.planning.budget import never
 from polaris_nl.planning.compile import Compiler, Draft
+from polaris_nl.planning.costs import Extra
 from polaris_nl.planning.mutexes import find_mutexes
 from polaris_nl.planning.result import BranchingPlan, Segment
 from polaris_nl.planning.segments import BUDGET_S, SegmentResult, Segments
@@ -24,12 +25,15 @@ class Planner:
     Args:
         world: entities, and the facts at the start.
         wording: words for problems; plain ones where there is no grammar.
+        extra: what decides between equally short plans.
 
     Raises:
         PlanningError: the planner can't use the world's domain.
     """
 
-    def __init__(self, world: World, wording: Wording | None = None) -> None:
+    def __init__(
+        self, world: World, wording: Wording | None = None, extra: Extra | None = None
+    ) -> None:
         self.world = world
         self.wording: Wording = wording or PlainWording(world)
         self.mutexes: Mutexes = find_mutexes(world)
@@ -37,7 +41,7 @@ class Planner:
         self._found = Mutexes(
             tuple(g for g in self.mutexes.groups if g not in world.domain.mutexes)
         )
-        self._segments = Segments(world, self.mutexes)
+        self._segments = Segments(world, self.mutexes, extra)
         self._compiler = Compiler(world, self.mutexes, self._segments, self.wording)
         self._edited = Automaton()
         self._shown: Mapping[str, Segment] = {}

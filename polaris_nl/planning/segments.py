@@ -14,8 +14,7 @@ from polaris_nl.model.evaluate import holds
 from polaris_nl.model.formula import Formula, Literal
 from polaris_nl.model.state import Mutexes, State
 from polaris_nl.model.world import World
-from polaris_nl.planning.budget import never
-from polaris_nl.planning.interrupt import Cancelled
+from polaris_nl.planning.costs import Extra
 from polaris_nl.planning.memory import Memory
 from polaris_nl.planning.projection import Projection
 from polaris_nl.planning.result import Step
@@ -35,6 +34,11 @@ MOST_FACTS = 2_000_000
 
 Status = OneOf["solved", "unsolvable", "undecided", "cancelled"]
 Key = tuple[State, frozenset[Formula]]
+
+
+def never() -> bool:
+    """The answer to "is this cancelled?" where nothing cancels."""
+    return False
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,15 +75,18 @@ class Segments:
     Args:
         world: the world.
         mutexes: what excludes what in it; without, tasks are planned whole.
+        extra: what decides between equally short plans.
     """
 
-    def __init__(self, world: World, mutexes: Mutexes | None = None) -> None:
+    def __init__(
+        self, world: World, mutexes: Mutexes | None = None, extra: Extra | None = None
+    ) -> None:
         self._world = world
         groups = mutexes.groups if mutexes else ()
         # What the domain only declares is not relied on.
         self._rules = Mutexes(tuple(g for g in groups if g not in world.domain.mutexes))
         self._projection = Projection(world, mutexes or Mutexes())
-        self._tasks = Tasks(world)
+        self._tasks = Tasks(world, extra)
         self._simulator = Simulator(world)
         self._known: Memory[Key, SegmentResult] = Memory(MOST_FACTS, _weight)
         self._small: Memory[Key, SegmentResult] = Memory(MOST_FACTS, _weight)
@@ -153,7 +160,7 @@ class Segments:
             checked = self._checked(state, goals, found)
             if checked is None and len(world.entities) < len(self._world.entities):
                 # The part was not all that matters after all, so the whole world is planned in.
-                task = self._tasks.of(self._world, state, goals, cancelled)
+                task = self._tasks.of(self._world, state, goals)
                 found = self._attempts(task, deadline, sought_s, None, cancelled)
                 checked = self._checked(state, goals, found)
             if checked is None:
@@ -166,8 +173,6 @@ class Segments:
                 )
                 return replace(checked, reason=checked.reason or reason)
             return checked
-        except Cancelled:
-            return SegmentResult("cancelled")
         except (PlanningError, FormatError) as error:
             return SegmentResult("undecided", reason=str(error))
 
@@ -181,7 +186,7 @@ class Segments:
         before: SegmentResult | None,
         cancelled: Callable[[], bool],
     ) -> SegmentResult:
-        task = self._tasks.of(world, small[0], goals, cancelled)
+        task = self._tasks.of(world, small[0], goals)
         found = self._attempts(task, deadline, sought_s, before, cancelled)
         # Only what is certain is remembered: an undecided segment may be decided next time.
         if found.status in ("solved", "unsolvable"):

@@ -33,6 +33,7 @@ from polaris_nl.model.state import State
 from polaris_nl.model.world import World
 from polaris_nl.planning.aiming import Shared
 from polaris_nl.planning.budget import never
+from polaris_nl.planning.costs import Extra
 from polaris_nl.planning.interrupt import Cancelled
 from polaris_nl.planning.memory import Memory
 from polaris_nl.planning.pddl_text import domain_text, problem_text
@@ -56,9 +57,12 @@ class Tasks:
 
     Args:
         world: the whole world; the state at its start is what shared translations start from.
+        extra: what actions cost, where they don't all cost the same. A task that has to be translated
+            for itself passes it over.
     """
 
-    def __init__(self, world: World) -> None:
+    def __init__(self, world: World, extra: Extra | None = None) -> None:
+        self._extra = extra or {}
         self._initial = world.initial
         self._domain = domain_text(world.domain)
         self._asked = _asked_for(world.domain)
@@ -113,7 +117,7 @@ class Tasks:
             facts = static | start
             text = problem_text(world, State(facts), ())
             sas = self._translated(key, text, cancelled)
-            shared = Shared(sas, facts, self._asked)
+            shared = Shared(sas, facts, self._asked, self._extra)
             self._shared.put(key, shared)
         return shared
 

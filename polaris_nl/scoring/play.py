@@ -1,7 +1,9 @@
 """A program carried out in thought: what the robot does next, as the executor would have it do.
 
 The rules are those of `polaris_nl.execution.executor` without its clock: what is perceived is what is
-so, and whoever acts is quick enough.
+so, and whoever acts is quick enough. But for one: where people have moved a thing that the program
+hasn't spoken of yet, the executor plans the rest of a segment anew, and here the robot waits for it to be
+put back. So what is promised here is what can be met at least.
 """
 
 from __future__ import annotations

@@ -162,6 +162,17 @@ def test_a_run_that_halts_ends_with_1(command: Command, lunch: Path, tmp_path: P
     assert "acknowledged" in result.json["reason"]
 
 
+def test_a_run_that_halts_says_how_it_goes_on_and_so_it_does(
+    command: Command, lunch: Path, tmp_path: Path
+) -> None:
+    log = tmp_path / "halted.mcap"
+    halted = " ".join(command("run", lunch, "--people", "none", "--log", log).out.split())
+    _, _, offered = halted.partition("it goes on with: polaris-nl ")
+    result = command(*offered.split(), "--log", tmp_path / "rest.mcap", "--json")
+    assert (result.code, result.json["outcome"]) == (0, "done")
+    assert result.json["checkpoints"] == ["alerted", "fetched", "home"]
+
+
 def test_score_counts_objectives(command: Command, tmp_path: Path) -> None:
     path = tmp_path / "t.json"
     for sentence in TIDY:
@@ -180,6 +191,18 @@ def test_score_counts_objectives(command: Command, tmp_path: Path) -> None:
     text = command("score", path).out
     assert "Feasibility: 4 of 4 objectives could be met" in text
     assert "2 human actions at the least for all objectives, the same." in " ".join(text.split())
+
+
+def test_a_run_that_is_refused_leaves_no_log(command: Command, tmp_path: Path) -> None:
+    empty = tmp_path / "empty.polaris.json"
+    start = {"id": "c0", "name": "start", "goals": []}
+    program = {"schema": "polaris-program/1", "domain": "caregiving", "world": "care-home",
+               "checkpoints": [start], "transitions": []}  # fmt: skip
+    empty.write_text(json.dumps(program))
+    log = tmp_path / "none.mcap"
+    refused = command("run", empty, "--log", log)
+    assert (refused.code, log.exists()) == (1, False)
+    assert "nothing to run" in one_sentence(refused.err)
 
 
 def test_score_of_a_log_counts_what_its_run_met(command: Command, tmp_path: Path) -> None:
@@ -270,7 +293,7 @@ def test_every_command_has_help_with_an_example(command: Command) -> None:
     assert commands is not None
     assert set(commands) == {
         "say", "dialogue", "plan", "why", "score", "run", "transcribe", "listen", "tui", "review", "domains",
-        "worlds", "check", "doctor", "models", "demo", "import", "export", "stretch-sim",
+        "worlds", "check", "doctor", "models", "demo", "import", "export", "durations", "stretch-sim",
     }  # fmt: skip
     for name in commands:
         shown = command(name, "--help")

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from rosbags.highlevel import AnyReader
 
+from polaris_nl.execution.events import GoalConfirmed
 from polaris_nl.logs.reader import read_log
 from tests.cli.conftest import ROOT, Command
 
@@ -56,6 +57,22 @@ def test_killing_a_run_loses_no_event_that_was_written(
             connections=[c for c in reader.connections if c.topic == "/rosout"]
         )]  # fmt: skip
     assert messages == [text for text in texts if text]
+    # The run goes on from the very file that the dead process has left.
+    rest = tmp_path / "rest.mcap"
+    result = command("run", lunch, "--resume", log, "--log", rest)
+    assert result.code == 0, result.err
+    assert "The run goes on where it was interrupted: " in result.out
+    done = [
+        e.action for x in (log, rest) for e in read_log(x).events if isinstance(e, GoalConfirmed)
+    ]
+    plain = tmp_path / "plain.mcap"
+    assert command("run", lunch, "--log", plain).code == 0
+    assert done == [e.action for e in read_log(plain).events if isinstance(e, GoalConfirmed)]
+    again = command("run", lunch, "--resume", rest)
+    assert (again.code, again.err) == (
+        1,
+        "polaris-nl: The run in this log is done, so nothing is left to go on with.\n",
+    )
 
 
 def test_an_independent_reader_opens_a_run(command: Command, lunch: Path, tmp_path: Path) -> None:

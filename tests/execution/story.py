@@ -11,10 +11,12 @@ from polaris_nl.execution.backend import Command, SendGoal
 from polaris_nl.execution.clock import VirtualClock
 from polaris_nl.execution.events import Event, StateChanged
 from polaris_nl.execution.faults import Fault
+from polaris_nl.execution.goals import GoalLimits
 from polaris_nl.execution.replanner import InlineReplanner
 from polaris_nl.execution.runner import RunResult, run
 from polaris_nl.execution.settings import RunSettings
-from polaris_nl.execution.simulation import SimulatedRobot, SimulationSettings
+from polaris_nl.execution.simulation import SimulatedRobot
+from polaris_nl.execution.simulation_settings import SimulationSettings
 from polaris_nl.execution.state import HumanCommand, RunPlan
 from polaris_nl.model.formula import Literal, parse_formula
 from polaris_nl.model.world import World
@@ -131,12 +133,13 @@ def carry_out(
     seed: int = 0,
     human_s: tuple[float, float] = (1.0, 3.0),
     replans: bool = True,
+    limits: GoalLimits = GoalLimits(),
     **settings: float | None,
 ) -> Told:
     """Runs a case in virtual time to its end."""
     events: list[Event] = []
     clock = BoundedClock(T0)
-    how = SimulationSettings(people=people, seed=seed, human_s=human_s)
+    how = SimulationSettings(people=people, seed=seed, human_s=human_s, limits=limits)
     robot = SpiedRobot(case, settings=how, faults=faults, sink=events.append)
     result = run(
         case.run_plan(**settings),

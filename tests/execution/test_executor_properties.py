@@ -591,3 +591,19 @@ def test_a_robot_that_never_answers_halts_the_run(programs: dict[str, Case]) -> 
     _, commands, events = around.pass_by(Moment(dt=0.1))
     assert commands == (CancelGoal(1), ZeroVelocity(), StopRobot())
     assert any(isinstance(e, Halted) for e in events)
+
+
+def test_what_is_only_out_of_sight_is_waited_for_and_not_planned_around(
+    programs: dict[str, Case],
+) -> None:
+    around = surroundings(programs["labelled"], grace_s=30.0)
+    while str(around.state.action) != "(pick tray empty-trays)":
+        around.pass_by(GOING_ON)
+    unseen = Moment(dt=0.4, lost=literals("(at tray empty-trays)"))
+    while around.state.phase != "deviating":
+        around.pass_by(replace(unseen, reports=((0, "failed"),)))
+    for _ in range(20):
+        around.pass_by(unseen)
+        assert around.state.request is None
+    assert around.state.phase == "deviating"
+    assert any(isinstance(e, Recovered) for e in around.pass_by(Moment())[2])

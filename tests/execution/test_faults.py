@@ -113,6 +113,14 @@ def test_a_goal_that_fails_is_sent_again(serve: Case, times: int) -> None:
     assert numbers == sorted(set(numbers))
 
 
+def test_late_news_of_a_goal_that_is_over_is_none_of_the_next(serve: Case) -> None:
+    told = carry_out(serve, Fault(2.0, "late"), report_s=0.5)
+    assert told.result.outcome == "done"
+    assert told.of(Deviated) == []
+    assert [r.goal for r in told.of(RobotReported) if r.report == "failed"] == [2]
+    assert [r for r in told.of(RobotReported) if (r.goal, r.report) == (2, "succeeded")] == []
+
+
 def test_a_goal_that_fails_too_often_halts(serve: Case) -> None:
     told = carry_out(serve, Fault(2.0, "fail", times=3))
     assert "something slipped" in halted(told).reason

@@ -108,7 +108,8 @@ def test_without_the_wait_it_halts_and_says_what_it_expected_and_saw(hasty_dishe
     assert told.result.outcome == "halted"
     assert told.result.reason == (
         "I expected that the cup is on the countertop, but I see that the cup is on the "
-        "drying rack."
+        "drying rack. Put that right and resume the run, or let the program wait until the cup "
+        "is on the drying rack."
     )
     deviated, halt = told.one(Deviated), told.one(Halted)
     assert deviated.expected == halt.expected == ["(at cup countertop)"]

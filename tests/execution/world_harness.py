@@ -11,7 +11,8 @@ from polaris_nl.execution.backend import Command, Robot
 from polaris_nl.execution.events import Event, Failed
 from polaris_nl.execution.faults import Fault
 from polaris_nl.execution.settings import RunSettings
-from polaris_nl.execution.simulation import SimulatedRobot, SimulationSettings
+from polaris_nl.execution.simulation import SimulatedRobot
+from polaris_nl.execution.simulation_settings import SimulationSettings
 from polaris_nl.execution.state import HumanCommand
 from polaris_nl.logs.reader import read_log
 from polaris_nl.logs.writer import LogWriter

@@ -33,7 +33,6 @@ INJECTED = {
     "paused and forgotten": ("nobody-resumed", "", False),
     "cancel ignored": ("stopped", "", False),
     "executor killed in the middle of a goal": ("no-end", "", False),
-    "no skill": ("failure", "", False),
 }
 """By scenario: what the review has to find, what is the matter with the robot, and whether it was mended."""
 

@@ -28,7 +28,7 @@ from polaris_nl.logs.reader import read_log
 from polaris_nl.logs.recovery import recover
 from polaris_nl.logs.review import matcher, next_problem, story, summary
 from polaris_nl.logs.schema import event_json, event_of, schema_of
-from polaris_nl.logs.writer import LogWriter, attachments_of
+from polaris_nl.logs.writer import LogWriter, RawKind, attachments_of
 from polaris_nl.model.errors import LogError
 
 EXAMPLE: list[Event] = [
@@ -83,6 +83,31 @@ def test_independent_readers_open_it(tmp_path: Path) -> None:
             for connection, _, raw in bag.messages(connections=connections)
         ]
     assert texts == [e.text for e in EXAMPLE]
+
+
+def test_raw_messages_stand_beside_the_events_and_survive_a_cut(tmp_path: Path) -> None:
+    path = tmp_path / "a.mcap"
+    text = RawKind("std_msgs/msg/String", "string data\n")
+    data = b"\0\1\0\0\3\0\0\0hi\0"
+    log = LogWriter(path)
+    log.write(EXAMPLE[0])
+    assert log.write_raw("/mode", text, 100.5, data)
+    log.write(EXAMPLE[1])
+    journal = path.read_bytes()
+    log.close()
+    assert not log.write_raw("/mode", text, 101.0, data)
+    cut = tmp_path / "cut.mcap"
+    cut.write_bytes(journal)
+    mended = recover(cut, tmp_path / "mended.mcap").path
+    for whole in (path, mended):
+        assert read_log(whole).events == EXAMPLE[:2]
+        with AnyReader([whole]) as bag:
+            (mode,) = (c for c in bag.connections if c.topic == "/mode")
+            found = [
+                (stamp, bag.deserialize(raw, mode.msgtype).data)  # type: ignore[attr-defined]
+                for _, stamp, raw in bag.messages(connections=[mode])
+            ]
+        assert found == [(100_500_000_000, "hi")]
 
 
 def test_each_message_fits_its_schema(tmp_path: Path) -> None:

@@ -13,7 +13,8 @@ from polaris_nl.execution.backend import Command, SendGoal
 from polaris_nl.execution.clock import VirtualClock
 from polaris_nl.execution.events import Event, Observed, PersonActed, RunStarted
 from polaris_nl.execution.runner import RunResult, objectives_met, run
-from polaris_nl.execution.simulation import SimulatedRobot, SimulationSettings
+from polaris_nl.execution.simulation import SimulatedRobot
+from polaris_nl.execution.simulation_settings import SimulationSettings
 from polaris_nl.execution.state import RunPlan
 from polaris_nl.model.domain import Action
 from polaris_nl.model.formula import parse_literal

@@ -113,7 +113,9 @@ def test_a_person_is_told_and_answers_as_the_world_says(
     if answer is None:
         sim.during(1.0)
         assert not sim.all["/polaris/heard"]
-        assert not {f for f in sim.facts() if "lunchtime" in f} - {"(alerted-to resident lunchtime)"}
+        assert not {f for f in sim.facts() if "lunchtime" in f} - {
+            "(alerted-to resident lunchtime)"
+        }
         return
     heard = sim.until(lambda: sim.last.get("/polaris/heard"), "she answers")
     assert json.loads(heard.data)["literal"] == f"({answer} lunchtime)"
@@ -207,7 +209,17 @@ def _stamp(sim: Client) -> float:
 
 
 def test_cameras_are_as_bad_as_is_asked_and_repeatable(start: Start) -> None:
-    options = ("--kinematic", "--people", "none", "--noise", "0.05", "--dropout", "0.4", "--speed", "20")
+    options = (
+        "--kinematic",
+        "--people",
+        "none",
+        "--noise",
+        "0.05",
+        "--dropout",
+        "0.4",
+        "--speed",
+        "20",
+    )
     _, sim = start(*options, world="dinner-party")
     sim.drive_to(sim.beside("sink"))
     sim.all["/aruco/marker_array"].clear()

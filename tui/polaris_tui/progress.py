@@ -28,6 +28,7 @@ _ACTIVITIES: Mapping[str, Activity] = {
     "waiting": "waiting",
     "paused": "paused",
     "deviating": "deviating",
+    "halting": "stopping",
 }
 
 

@@ -154,9 +154,9 @@ class Driver:
         client = self.actions[name]
         await until(client.server_is_ready, times.service, what)
         await self._last_goal_ended(what)
-        handle = await within(client.send_goal_async(goal), times.accept, what)
+        handle = await self._sent(client, goal, what)
         if not handle.accepted:
-            raise Refused(f"it refuses to {what} just now")
+            raise Refused(f"it refuses {what} just now")
         self.accepted()
         self.open_goals.append(handle)
         future = handle.get_result_async()
@@ -171,8 +171,18 @@ class Driver:
         status = interface("action_msgs/msg/GoalStatus")
         if answer.status != status.STATUS_SUCCEEDED:
             told = str(getattr(answer.result, "error_string", "")).strip().rstrip(".")
-            raise Refused(told or f"it gave up to {what}")
+            raise Refused(told or f"it gave up {what}")
         return answer.result
+
+    async def _sent(self, client: Any, goal: Any, what: str) -> Any:
+        """Sends a goal and waits for the robot's answer; one that comes too late for us is cancelled."""
+        future = client.send_goal_async(goal)
+        try:
+            await until(future.done, self.profile.times.accept, what)
+        except BaseException:
+            future.add_done_callback(_disown)
+            raise
+        return future.result()
 
     def cancel_all(self) -> None:
         """Asks the robot to give up every goal that hasn't ended."""
@@ -188,6 +198,11 @@ class Driver:
     def _ended(self, handle: Any) -> None:
         if handle in self.open_goals:
             self.open_goals.remove(handle)
+
+
+def _disown(future: Any) -> None:
+    if not future.cancelled() and future.exception() is None and future.result().accepted:
+        future.result().cancel_goal_async()
 
 
 def _quality(name: str) -> Any:

@@ -16,7 +16,9 @@ from polaris_nl.model.errors import RunError
 INSTALL = 'pip install "polaris-nl[ros]"'
 INTERFACES = "python scripts/build_interfaces.py (in a checkout: make robot)"
 """What builds the interface packages that no wheel brings."""
-OPTIONAL = ("control_msgs", "nav2_msgs", "tf2_msgs", "visualization_msgs")
+BUILT = ("control_msgs", "nav2_msgs", "tf2_msgs")
+MESSAGES = (*BUILT, "visualization_msgs")
+"""What a robot is driven and seen with; without them there is joint_pose_cmd, cmd_vel and odometry."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,8 +106,14 @@ def interface(name: str) -> Any:
     try:
         return getattr(importlib.import_module(f"{package}.{kind}"), short)
     except (ImportError, AttributeError) as error:
-        mend = f"build it with {INTERFACES}" if package in OPTIONAL else f"install it: {INSTALL}"
-        raise RunError(f"The message type {name} is missing here; {mend}.") from error
+        raise RunError(f"The message type {name} is missing here. {build_hint(package)}") from error
+
+
+def build_hint(package: str) -> str:
+    """What brings a package of message types."""
+    if package in BUILT:
+        return f"Build it: {INTERFACES}"
+    return f"Install it: {INSTALL}"
 
 
 def _first_line(error: Exception) -> str:

@@ -93,6 +93,9 @@ class Owner:
         watch: is called in the thread at every turn, some hundred times a second.
         last: is called in the thread when it ends by a fault of its own, before the node goes.
 
+    Attributes:
+        failure: why the thread ended by a fault of its own, or "".
+
     Raises:
         RunError: rclpy is missing, or can't start.
     """
@@ -112,6 +115,7 @@ class Owner:
         self._jobs: list[_Running] = []
         self._inbox: queue.SimpleQueue[_Running] = queue.SimpleQueue()
         self._closing = threading.Event()
+        self.failure = ""
         self._ready: Handed[None] = Handed()
         self._executor: Any = None
         self._thread = threading.Thread(target=self._run, name="ros", daemon=True)
@@ -164,6 +168,7 @@ class Owner:
             context.init()
             self._serve(context)
         except BaseException as error:
+            self.failure = _reason(error)
             if not self._ready.done():
                 self._ready.set_exception(_as_run_error(error))
         finally:
@@ -231,5 +236,10 @@ def _settle(handed: Handed[Any], result: Any = None, error: BaseException | None
 def _as_run_error(error: BaseException) -> BaseException:
     if isinstance(error, RunError):
         return error
-    reason = (str(error).splitlines() or [type(error).__name__])[0]
-    return RunError(f"The link to the robot can't be opened ({reason}); see: polaris-nl doctor")
+    return RunError(
+        f"The link to the robot can't be opened ({_reason(error)}); see: polaris-nl doctor"
+    )
+
+
+def _reason(error: BaseException) -> str:
+    return f"{type(error).__name__}: {(str(error).splitlines() or [''])[0]}"

@@ -116,10 +116,11 @@ class Belief:
 
 @dataclass(frozen=True)
 class Memory:
-    """All beliefs, and the facts that never change."""
+    """All beliefs, the facts that never change, and since when it is kept."""
 
     static: frozenset[Literal]
     beliefs: Mapping[Variable, Belief]
+    since: float
     heard: int = 0
 
 
@@ -133,7 +134,7 @@ def remembered(world: World, now: float, state: State | None = None) -> Memory:
         for f in facts
         if f.predicate in changing and f != HAND
     }
-    return Memory(static, beliefs)
+    return Memory(static, beliefs, now)
 
 
 def _changes(world: World, predicate: str) -> bool:
@@ -154,9 +155,8 @@ def perceive(memory: Memory, percepts: Percepts, now: float, scene: Scene) -> Me
     """
     beliefs = dict(memory.beliefs)
     for variable, value, stamp, source in _values(memory, percepts, now, scene):
-        beliefs[variable] = _believe(
-            beliefs.get(variable), value, stamp, source, scene.how.settle_s
-        )
+        before = beliefs.get(variable, Belief(None, memory.since, ASSUMED))
+        beliefs[variable] = _believe(before, value, stamp, source, scene.how.settle_s)
     for word in percepts.heard[memory.heard :]:
         for rival in [b.value for b in beliefs.values() if b.value is not None]:
             if word.literal.positive and scene.mutexes.exclusive(word.literal, rival):
@@ -167,15 +167,13 @@ def perceive(memory: Memory, percepts: Percepts, now: float, scene: Scene) -> Me
 
 
 def _believe(
-    before: Belief | None,
+    before: Belief,
     value: Literal | None,
     stamp: float,
     source: str,
     settle_s: float,
 ) -> Belief:
     """One variable after one look at it."""
-    if before is None:
-        before = Belief(None, -1.0, source)
     if stamp < before.stamp:
         return before
     if value == before.value:

@@ -23,6 +23,8 @@ JOINT_POSE = (
     "joint_head_pan", "joint_head_tilt", "gripper_aperture",
 )  # fmt: skip
 """The order of `joint_pose_cmd`, whose last two values move the base."""
+NAVIGATION, POSITION = "navigation", "position"
+"""The driver's modes for the base and for the arm."""
 POINT_S = 3
 """How long a movement of the arm is given on its way, in seconds."""
 GOAL_GAP_S = 0.3
@@ -115,9 +117,8 @@ class Primitives:
         if target is None:
             raise Refused(f"it doesn't know where {_spoken(arguments['to'])} is")
         if self._stands(target, 1.0):
-            self._driver.accepted()
             return
-        await self._mode("navigation", "navigation_mode")
+        await self._mode(NAVIGATION, "navigation_mode")
         if "navigate" in self._driver.actions and self._driver.offers("navigate"):
             goal = interface("nav2_msgs/action/NavigateToPose").Goal()
             goal.pose.header.frame_id = "map"
@@ -198,9 +199,8 @@ class Primitives:
         if wrong:
             raise Refused(wrong)
         if self._at(joints):
-            self._driver.accepted()
             return
-        await self._mode("position", "position_mode")
+        await self._mode(POSITION, "position_mode")
         seconds = self._profile.times.trajectory
         if "trajectory" in self._driver.actions and self._driver.offers("trajectory"):
             goal = interface("control_msgs/action/FollowJointTrajectory").Goal()

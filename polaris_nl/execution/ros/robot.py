@@ -33,7 +33,7 @@ from polaris_nl.execution.ros.middleware import stay_on_this_machine
 from polaris_nl.execution.ros.mission import Mission
 from polaris_nl.execution.ros.owner import Owner, until
 from polaris_nl.execution.ros.perception import Scene, perceive, remembered
-from polaris_nl.execution.ros.primitives import Primitives
+from polaris_nl.execution.ros.primitives import NAVIGATION, Primitives
 from polaris_nl.execution.ros.profile import Profile
 from polaris_nl.execution.ros.senses import Intake
 from polaris_nl.execution.ros.skills import skills_for
@@ -183,13 +183,15 @@ class StretchRobot:
             self._looked = now
             self._memory = perceive(self._memory, self._senses.percepts, now, self._scene)
             self._state = facts(self._memory)
-        if self._still and now - self._stilled >= STILL_S:
+        heeded = self._senses.mode in ("", NAVIGATION)
+        if self._still and heeded and now - self._stilled >= STILL_S:
             self._stilled = now
             self._driver.velocity(0.0, 0.0)
 
     def _health_now(self, now: float) -> Health:
         if not self._owner_alive():
-            return Health("fault", "the link to the robot broke; see: polaris-nl doctor")
+            why = f" ({self._owner.failure})" if self._owner.failure else ""
+            return Health("fault", f"the link to the robot broke{why}; start the run again")
         return health_of(self._senses.vitals, now, self._profile.safety)
 
     def _owner_alive(self) -> bool:

@@ -216,8 +216,9 @@ class Intake:
         self.percepts = replace(self.percepts, base=base, base_stamp=stamp)
 
     def _perceived(self, message: Any) -> None:
+        """Each message tells all that the detectors perceive; what it leaves out isn't perceived any more."""
         value = _json(message.data)
-        found = dict(self.percepts.detected)
+        found: dict[Literal, Detected] = {}
         told = self._seconds(value.get("stamp"))
         for item in value.get("facts") or ():
             literal = self._literal(item.get("literal")) if isinstance(item, Mapping) else None

@@ -10,6 +10,10 @@ from polaris_nl.execution.ros.profile import Safety
 
 CLOCK_JUMP_S = 1.0
 """A robot whose time stamps move by more than this against our clock has a clock that jumped."""
+TWO_SPEAK = (
+    "two programs answer for the robot at once; end one of them (one that was killed counts for up to "
+    "20 seconds more)"
+)
 BUSY_MODES = ("homing", "stowing", "calibration")
 STOPPED_MODE = "runstopped"
 
@@ -47,11 +51,11 @@ def health_of(vitals: Vitals, now: float, limits: Safety) -> Health:
     if abs(vitals.drift) > CLOCK_JUMP_S:
         return Health("clock")
     if any(count > 1 for count in vitals.speakers.values()):
-        return Health("duplicate")
+        return Health("duplicate", TWO_SPEAK)
     if vitals.voltage is not None and vitals.voltage < limits.battery_v:
         return Health("battery")
     if vitals.mode in BUSY_MODES:
-        text = f"the robot is busy with itself ({vitals.mode}); wait until it is done"
+        text = f"the robot is in {vitals.mode} mode and takes no commands; wait until it is done"
         return Health("mode", text)
     return READY
 

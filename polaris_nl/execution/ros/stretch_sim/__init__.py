@@ -3,3 +3,8 @@
 What decides is pure and takes the time from outside; only `node.py` imports rclpy, `mujoco_body.py` and what
 it uses import MuJoCo, `picture.py` what draws.
 """
+
+import os
+
+# Pictures are drawn without a screen. MuJoCo reads this when it is imported, which is later.
+os.environ.setdefault("MUJOCO_GL", "egl")

@@ -17,10 +17,10 @@ MAX_ANGULAR = 1.0
 LINEAR_ACCELERATION = 0.6
 ANGULAR_ACCELERATION = 3.0
 
-ARM_SIDE_M = 0.30
+ARM_SIDE_M = 0.415
 """From the middle of the base to the gripper's fingers, to the right, with the arm drawn in."""
 ARM_FORWARD_M = -0.02
-LIFT_BASE_M = 0.17
+LIFT_BASE_M = 0.11
 """The height of the gripper above the floor with the lift down."""
 
 

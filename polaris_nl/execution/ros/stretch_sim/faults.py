@@ -124,6 +124,24 @@ class Mishaps:
                 return self._waiting.pop(at)
         return None
 
+    def strike(self, fault: Fault, now: float) -> bool:
+        """Lets a fault of senses or clock begin; False if it is none of those."""
+        until = now + fault.seconds
+        match fault.kind:
+            case "blind":
+                self.blind_until = until
+            case "stale":
+                self.stale_until = until
+            case "silent":
+                self.silent_until = until
+            case "clock-jump":
+                self.clock_s += fault.seconds
+            case "clear":
+                self.clear()
+            case _:
+                return False
+        return True
+
     def clear(self) -> None:
         """Nothing goes wrong any more."""
         self._waiting.clear()

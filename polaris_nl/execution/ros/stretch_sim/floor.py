@@ -1,29 +1,33 @@
 """The floor: which places are free, and the way from one to another.
 
 The world's ROS map is used where there is one (map_server's YAML and an 8-bit PGM); otherwise what isn't
-furniture is free. The way is found with A* over the cells that the robot's round base fits on.
+furniture is free.
 """
 
 from __future__ import annotations
 
-import heapq
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 import yaml
 
-from polaris_nl.execution.ros.layout import Layout
+from polaris_nl.execution.ros.layout import Area, Layout
+from polaris_nl.execution.ros.stretch_sim.ways import Ways
 from polaris_nl.model.errors import FormatError
 
 Cell = tuple[int, int]
 
 ROBOT_RADIUS_M = 0.22
+_ROUTE_RADIUS_M = ROBOT_RADIUS_M + 0.03
 _HALF_FURNITURE_M = 0.2
 _MARGIN_M = 0.5
+_FURNITURE_REACH_M = 0.45
+_HALF_WALL_M = 0.06
 _OPEN_RESOLUTION_M = 0.05
-_NEAR_WALL_M = 0.45
+NEAR_WALL_M = 0.45
 """Cells nearer to a wall than this cost more, so that ways keep their distance where they can."""
 
 
@@ -35,7 +39,8 @@ class Floor:
         width, height: in cells.
         resolution: metres a cell.
         origin: the lower left corner of the first cell, in metres.
-        clearance: for each cell the metres to the nearest occupied one, at most `_NEAR_WALL_M`.
+        clearance: for each cell the metres to the nearest occupied one, at most `NEAR_WALL_M`.
+        solid: for each cell whether something is known to be there, a wall or a piece of furniture.
     """
 
     width: int
@@ -43,10 +48,16 @@ class Floor:
     resolution: float
     origin: tuple[float, float]
     clearance: Sequence[float]
+    solid: bytes
 
     def fits(self, x: float, y: float) -> bool:
         """Whether the robot can be at a point."""
         return self._open(self.cell(x, y))
+
+    def room(self, x: float, y: float) -> float:
+        """The metres from a point to what is nearest, as far as they matter; 0 off the map."""
+        cell = self.cell(x, y)
+        return self._at(cell) if self._inside(cell) else 0.0
 
     def cell(self, x: float, y: float) -> Cell:
         """The cell of a point."""
@@ -79,11 +90,10 @@ class Floor:
         self, start: tuple[float, float], goal: tuple[float, float]
     ) -> list[tuple[float, float]]:
         """Points on the way, the goal last, with as few corners as there can be; [] where there is no way."""
-        cells = self._search(self.cell(*start), self.cell(*goal))
-        if not cells:
-            return []
-        points = [self.point(c) for c in cells]
-        return [*self._straightened(start, points)[:-1], goal]
+        if self.fits(*start) and self.sees(start, goal, _ROUTE_RADIUS_M):
+            return [goal]
+        points = self._ways.between(start, goal)
+        return [*self._straightened(start, [*points, goal])[:-1], goal] if points else []
 
     def sees(self, a: tuple[float, float], b: tuple[float, float], clearance: float = 0.0) -> bool:
         """Whether the straight line between two points keeps a distance from everything occupied."""
@@ -95,6 +105,44 @@ class Floor:
                 return False
         return True
 
+    @cached_property
+    def _ways(self) -> Ways:
+        return Ways(self, NEAR_WALL_M)
+
+    def walls(self, layout: Layout) -> list[Area]:
+        """Rectangles that cover what is solid, but for furniture, in metres."""
+        left = bytearray(self.solid)
+        for place in layout.places.values():
+            for index, cell in self._around(place.x, place.y, _FURNITURE_REACH_M):
+                x, y = self.point(cell)
+                region = layout.areas.get(layout.region_at(place.x, place.y))
+                if region is not None and region.holds(x, y, _HALF_WALL_M):
+                    left[index] = 0
+        # Each rectangle takes its cells out of what is left for the ones after it.
+        return [self._rectangle(left, start) for start in range(len(left)) if left[start]]
+
+    def _around(self, x: float, y: float, reach: float) -> Iterator[tuple[int, Cell]]:
+        steps = math.ceil(reach / self.resolution)
+        cx, cy = self.cell(x, y)
+        for dy in range(-steps, steps + 1):
+            for dx in range(-steps, steps + 1):
+                cell = cx + dx, cy + dy
+                if self._inside(cell):
+                    yield cell[1] * self.width + cell[0], cell
+
+    def _rectangle(self, left: bytearray, start: int) -> Area:
+        """Takes the largest run to the right of a cell, and then upwards, out of what is left."""
+        x0, y0 = start % self.width, start // self.width
+        x1 = x0
+        while x1 < self.width and left[y0 * self.width + x1]:
+            x1 += 1
+        y1 = y0
+        while y1 < self.height and all(left[y1 * self.width + x0 : y1 * self.width + x1]):
+            left[y1 * self.width + x0 : y1 * self.width + x1] = bytes(x1 - x0)
+            y1 += 1
+        (ox, oy), r = self.origin, self.resolution
+        return Area(ox + x0 * r, oy + y0 * r, ox + x1 * r, oy + y1 * r)
+
     def _inside(self, cell: Cell) -> bool:
         return 0 <= cell[0] < self.width and 0 <= cell[1] < self.height
 
@@ -104,39 +152,6 @@ class Floor:
     def _open(self, cell: Cell) -> bool:
         return self._inside(cell) and self._at(cell) > ROBOT_RADIUS_M
 
-    def _search(self, start: Cell, goal: Cell) -> list[Cell]:
-        if not self._open(goal):
-            return []
-        best: dict[Cell, float] = {start: 0.0}
-        came: dict[Cell, Cell] = {}
-        queue: list[tuple[float, Cell]] = [(0.0, start)]
-        closed: set[Cell] = set()
-        while queue:
-            _, cell = heapq.heappop(queue)
-            if cell == goal:
-                return _way(came, cell)
-            if cell in closed:
-                continue
-            closed.add(cell)
-            for near, cost in self._neighbours(cell):
-                total = best[cell] + cost
-                if total < best.get(near, math.inf):
-                    best[near] = total
-                    came[near] = cell
-                    heapq.heappush(queue, (total + math.dist(near, goal), near))
-        return []
-
-    def _neighbours(self, cell: Cell) -> Iterator[tuple[Cell, float]]:
-        # From where the robot doesn't fit (it was put there) it may go on to where it does.
-        for dx, dy in ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1)):
-            near = cell[0] + dx, cell[1] + dy
-            if not self._inside(near):
-                continue
-            if not self._open(near) and (self._open(cell) or self._at(near) <= 0):
-                continue
-            tight = 2.0 * (1 - min(self._at(near) / _NEAR_WALL_M, 1.0))
-            yield near, math.hypot(dx, dy) * (1 + tight)
-
     def _straightened(
         self, start: tuple[float, float], points: Sequence[tuple[float, float]]
     ) -> list[tuple[float, float]]:
@@ -144,19 +159,11 @@ class Floor:
         here, at = start, 0
         while at < len(points) - 1:
             ahead = len(points) - 1
-            while ahead > at + 1 and not self.sees(here, points[ahead], ROBOT_RADIUS_M + 0.03):
+            while ahead > at + 1 and not self.sees(here, points[ahead], _ROUTE_RADIUS_M):
                 ahead = at + (ahead - at) // 2
             kept.append(points[ahead])
             here, at = points[ahead], ahead
         return kept or [points[-1]]
-
-
-def _way(came: dict[Cell, Cell], cell: Cell) -> list[Cell]:
-    way = [cell]
-    while cell in came:
-        cell = came[cell]
-        way.append(cell)
-    return way[::-1]
 
 
 def floor_of(layout: Layout, map_file: Path | None) -> Floor:
@@ -180,7 +187,8 @@ def floor_of(layout: Layout, map_file: Path | None) -> Floor:
                 if max(abs(px - place.x), abs(py - place.y)) <= _HALF_FURNITURE_M:
                     occupied[y * width + x] = 1
     cleared = _clearance(occupied, width, height, _OPEN_RESOLUTION_M)
-    return Floor(width, height, _OPEN_RESOLUTION_M, (left, bottom), cleared)
+    solid = bytes(len(occupied))
+    return Floor(width, height, _OPEN_RESOLUTION_M, (left, bottom), cleared, solid)
 
 
 def read_map(path: Path) -> Floor:
@@ -194,6 +202,7 @@ def read_map(path: Path) -> Floor:
         image = path.with_name(given["image"]).read_bytes()
         resolution, origin = float(given["resolution"]), given["origin"]
         free_below = float(given.get("free_thresh", 0.196))
+        solid_above = float(given.get("occupied_thresh", 0.65))
         negate = bool(given.get("negate", 0))
         magic, width, height, _ = _header(image)
         x, y = float(origin[0]), float(origin[1])
@@ -202,15 +211,17 @@ def read_map(path: Path) -> Floor:
     if magic != b"P5" or len(image) < width * height:
         raise FormatError(f"The image {given['image']} isn't an 8-bit PGM.", path)
     levels = image[len(image) - width * height :]
-    occupied = bytearray(width * height)
+    occupied, solid = bytearray(width * height), bytearray(width * height)
     for row in range(height):
         for column in range(width):
             level = levels[row * width + column]
             darkness = level / 255 if negate else (255 - level) / 255
+            cell = (height - 1 - row) * width + column
             # Where nothing is known the robot doesn't go.
-            occupied[(height - 1 - row) * width + column] = darkness >= free_below
+            occupied[cell] = darkness >= free_below
+            solid[cell] = darkness >= solid_above
     cleared = _clearance(occupied, width, height, resolution)
-    return Floor(width, height, resolution, (x, y), cleared)
+    return Floor(width, height, resolution, (x, y), cleared, bytes(solid))
 
 
 def _header(image: bytes) -> tuple[bytes, int, int, int]:
@@ -224,13 +235,13 @@ def _header(image: bytes) -> tuple[bytes, int, int, int]:
 
 def _clearance(occupied: bytearray, width: int, height: int, resolution: float) -> list[float]:
     """The metres from each cell to the nearest occupied one, as far as they matter."""
-    reach = math.ceil(_NEAR_WALL_M / resolution)
+    reach = math.ceil(NEAR_WALL_M / resolution)
     ring = sorted(
         (math.hypot(dx, dy) * resolution, dx, dy)
         for dx in range(-reach, reach + 1)
         for dy in range(-reach, reach + 1)
     )
-    clearance = [0.0 if cell else _NEAR_WALL_M for cell in occupied]
+    clearance = [0.0 if cell else NEAR_WALL_M for cell in occupied]
     for index, cell in enumerate(occupied):
         if not cell:
             continue

@@ -17,6 +17,7 @@ PROGRESS_S = 10.0
 _NEAREST_M = 0.5
 _PROGRESS = 0.05
 _CLOSE_M = 0.06
+_DRIFT_M = 0.15
 _CLOSE_RAD = 0.06
 _CORNER_M = 0.12
 _LINEAR, _ANGULAR = 0.26, 0.8
@@ -40,6 +41,7 @@ class Navigation:
     elapsed: float = 0.0
     _progress_at: float = 0.0
     _best: Pose | None = None
+    _there: bool = False
 
     def remaining(self, pose: Pose) -> float:
         """Metres still to go."""
@@ -73,9 +75,12 @@ class Navigation:
     def _velocity(self, pose: Pose) -> tuple[float, float]:
         x, y = self.route[0]
         distance = pose.distance(x, y)
-        if len(self.route) == 1 and distance < _CLOSE_M:
+        if len(self.route) == 1 and distance < (_DRIFT_M if self._there else _CLOSE_M):
+            # While it turns the base drifts a little; that alone doesn't send it back.
+            self._there = True
             error = wrapped(self.goal.yaw - pose.yaw)
             return 0.0, 0.0 if abs(error) < _CLOSE_RAD else _turn(error)
+        self._there = False
         error = wrapped(math.atan2(y - pose.y, x - pose.x) - pose.yaw)
         if abs(error) > 0.35:
             return 0.0, _turn(error)

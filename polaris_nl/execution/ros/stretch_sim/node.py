@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import time
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
@@ -22,13 +22,20 @@ from polaris_nl.execution.ros.stretch_sim.actions import Actions
 from polaris_nl.execution.ros.stretch_sim.driver import NAVIGATION, POSITION, TRAJECTORY, Answer
 from polaris_nl.execution.ros.stretch_sim.faults import parse_fault
 from polaris_nl.execution.ros.stretch_sim.joints import published
-from polaris_nl.execution.ros.stretch_sim.simulator import Saying, Simulator
+from polaris_nl.execution.ros.stretch_sim.simulator import Simulator
 from polaris_nl.execution.ros.stretch_sim.skills import Reply, Request
+from polaris_nl.execution.ros.stretch_sim.snapshot import snapshot
+from polaris_nl.execution.ros.stretch_sim.speech import Saying
 from polaris_nl.model.errors import PolarisError
+
+if TYPE_CHECKING:
+    from polaris_nl.execution.ros.stretch_sim.film import Film
 
 LOOP_S = 0.01
 PUBLISH_S = 1 / 30
 SENSE_S = 0.1
+WORDS_S = 8.0
+"""How long a film shows what was said or done, in simulated seconds."""
 TOOL = "eoa_wrist_dw3_tool_sg3"
 _SENDING = {
     "joints": (JointState, "/stretch/joint_states"),
@@ -54,9 +61,10 @@ class StretchNode(Node):  # type: ignore[misc]
 
     Args:
         simulator: what it drives.
+        film: what draws it, or None.
     """
 
-    def __init__(self, simulator: Simulator) -> None:
+    def __init__(self, simulator: Simulator, film: Film | None = None) -> None:
         super().__init__("stretch_driver")
         self.simulator = simulator
         self._driver = simulator.driver
@@ -72,6 +80,9 @@ class StretchNode(Node):  # type: ignore[misc]
         self._serve()
         self._actions = Actions(self, simulator)
         self._frozen_stamp: float | None = None
+        self._film = film
+        self._last_words = ""
+        self._words_at = 0.0
         self.create_timer(LOOP_S, self._loop)
         self.create_timer(PUBLISH_S, self._publish)
         self.create_timer(SENSE_S, self._sense)
@@ -84,14 +95,19 @@ class StretchNode(Node):  # type: ignore[misc]
         stamp = self.simulator.stamp(time.time())
         for saying in happened.said:
             said = {"person": saying.person, "message": saying.message, "text": saying.text}
+            self._note(f"robot: {saying.text}")
             self._out["said"].publish(messages.text({**said, "heard": True, "stamp": stamp}))
         for deed in happened.deeds:
+            self._note(f"a person: {deed.action.name}")
             self.get_logger().info(f"a person does this: {deed.action.name}")
             if not self.simulator.cameras.hears(deed.speaker):
                 continue
             for literal in deed.spoken:
                 heard = {"literal": str(literal), "person": deed.speaker, "stamp": stamp}
                 self._out["heard"].publish(messages.text(heard))
+
+    def _note(self, words: str) -> None:
+        self._last_words, self._words_at = words, self.simulator.time
 
     def _publish(self) -> None:
         now = time.time()
@@ -111,6 +127,10 @@ class StretchNode(Node):  # type: ignore[misc]
 
     def _sense(self) -> None:
         now = time.time()
+        if self._film is not None:
+            recent = self.simulator.time - self._words_at < WORDS_S
+            moment = snapshot(self.simulator, self._last_words if recent else "")
+            self._film.show(self.simulator.wall, moment)
         self._publish_truth(now)
         mishaps = self.simulator.mishaps
         if now < max(mishaps.blind_until, mishaps.silent_until):

@@ -11,7 +11,8 @@ from polaris_nl.model.formula import Literal
 from polaris_nl.model.state import Mutexes
 from polaris_nl.model.world import HumanAction, World
 
-DELAY_S = (1.0, 3.0)
+DELAY_S = (4.0, 8.0)
+"""The shortest and longest time that somebody takes: the robot has drawn its arm in by then."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,6 +43,7 @@ class People:
         self._willing = willing(scene.world, preferred, mutexes)
         self._due: dict[str, float] = {}
         self._done: set[str] = set()
+        self._lasting: set[str] = set()
 
     def step(self, time: float) -> list[Deed]:
         """Lets time pass, in the simulation's seconds.
@@ -51,16 +53,27 @@ class People:
         """
         deeds = []
         for action in self._willing:
-            if action.name in self._done:
+            if not self._may(action):
                 continue
             if not all(self._scene.state.holds(x) for x in action.when):
                 self._due.pop(action.name, None)
                 continue
             if time >= self._due.setdefault(action.name, time + self._random.uniform(*DELAY_S)):
                 self._done.add(action.name)
+                self._lasting.discard(action.name)
+                self._due.pop(action.name)
                 self._scene.make_true(action.effect)
                 deeds.append(self._deed(action))
         return deeds
+
+    def _may(self, action: HumanAction) -> bool:
+        """Whether it isn't done yet, or was undone since its effect was seen (walking takes a while)."""
+        if action.name not in self._done:
+            return True
+        if all(map(self._scene.state.holds, action.effect)):
+            self._lasting.add(action.name)
+            return False
+        return action.name in self._lasting
 
     def _deed(self, action: HumanAction) -> Deed:
         names = [name for x in (*action.when, *action.effect) for name in x.args]

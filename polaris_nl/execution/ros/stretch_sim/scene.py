@@ -8,54 +8,27 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
 
 from polaris_nl.execution.ros.layout import Layout, Pose
 from polaris_nl.execution.ros.stretch_sim.body import Body, Point3
 from polaris_nl.execution.ros.stretch_sim.floor import Floor
+from polaris_nl.execution.ros.stretch_sim.person import Person
 from polaris_nl.model.errors import RunError, UsageError, did_you_mean
 from polaris_nl.model.formula import Literal
 from polaris_nl.model.state import Mutexes
 from polaris_nl.model.world import World
 
-SURFACE_M = 0.72
-"""The height of tables and other surfaces."""
-CONTAINER_M = 0.86
-INSIDE_M = 0.60
+SURFACE_M = 0.50
+"""The height of tables and other surfaces: low, so that the arm can go out over them from where it rests."""
+CONTAINER_M = 0.58
+INSIDE_M = 0.34
 HANDS_M = 1.0
 """How high people hold things."""
-WALK_M_S = 0.9
 OBJECT_HALF_M = 0.04
 _SPACING = 0.13
 _SPOTS = [(i * _SPACING, j * _SPACING) for i in (0, -1, 1) for j in (0, -1, 1)]
 _BESIDE = [(0.9, 0.5), (-0.9, 0.5), (0.9, -0.5), (-0.9, -0.5), (0.0, 1.0), (0.0, -1.0)]
 PLACED = ("at", "in", "has", "holding")
-
-
-@dataclass(slots=True)
-class Person:
-    """Somebody: where, and the way ahead."""
-
-    name: str
-    x: float
-    y: float
-    yaw: float = 0.0
-    way: list[tuple[float, float]] = field(default_factory=list)
-
-    def step(self, seconds: float) -> None:
-        """Walks on."""
-        left = WALK_M_S * seconds
-        while self.way and left > 0:
-            x, y = self.way[0]
-            distance = math.dist((self.x, self.y), (x, y))
-            if distance > 1e-6:
-                self.yaw = math.atan2(y - self.y, x - self.x)
-            if distance <= left:
-                self.x, self.y = self.way.pop(0)
-            else:
-                self.x += (x - self.x) * left / distance
-                self.y += (y - self.y) * left / distance
-            left -= distance
 
 
 class Scene:

@@ -6,6 +6,7 @@ own, which runs `speed` times as fast.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -14,21 +15,23 @@ from polaris_nl.execution.ros.stretch_sim import skills
 from polaris_nl.execution.ros.stretch_sim.body import Body, KinematicBody
 from polaris_nl.execution.ros.stretch_sim.driver import Driver
 from polaris_nl.execution.ros.stretch_sim.faults import GOAL_FAULTS, Fault, Mishaps
-from polaris_nl.execution.ros.stretch_sim.floor import floor_of
+from polaris_nl.execution.ros.stretch_sim.floor import Floor, floor_of
 from polaris_nl.execution.ros.stretch_sim.navigation import Navigation, begin
 from polaris_nl.execution.ros.stretch_sim.people import Deed, People
 from polaris_nl.execution.ros.stretch_sim.perception import Cameras, Settings
 from polaris_nl.execution.ros.stretch_sim.scene import Scene, start_pose
 from polaris_nl.execution.ros.stretch_sim.skills import Reply, Request
-from polaris_nl.model.formula import Literal
+from polaris_nl.execution.ros.stretch_sim.speech import Saying, Speech
 from polaris_nl.model.world import World
 from polaris_nl.planning.mutexes import find_mutexes
 
 STEP_S = 0.02
 LAG_S = 0.5
 """If the machine falls behind by more than this, simulated time is dropped instead."""
-SPEECH_S = (0.5, 0.05, 4.0)
-"""How long saying something takes: at least, for each character, at most."""
+CATCH_UP_S = 0.05
+"""The most that is caught up with at a time, so that the driver's topics don't fall silent over it."""
+MakeBody = Callable[[World, Layout, Floor, Pose], Body]
+"""Makes a body in a world, with its start."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,15 +51,6 @@ class Options:
     noise_m: float = 0.0
     dropout: float = 0.0
     homed: bool = True
-
-
-@dataclass(frozen=True, slots=True)
-class Saying:
-    """Something the robot says: to whom, which message, in what words."""
-
-    person: str
-    message: str
-    text: str
 
 
 @dataclass(slots=True)
@@ -95,14 +89,14 @@ class Simulator:
         world: World,
         now: float,
         options: Options | None = None,
-        make_body: Callable[[World, Layout, Pose], Body] | None = None,
+        make_body: MakeBody | None = None,
     ) -> None:
         options = options or Options()
         self.layout = Layout.of(world)
         start = start_pose(world, self.layout)
         self.floor = floor_of(self.layout, world.map)
         self.body: Body = (
-            make_body(world, self.layout, start)
+            make_body(world, self.layout, self.floor, start)
             if make_body is not None
             else KinematicBody(start, self.floor.fits)
         )
@@ -117,11 +111,12 @@ class Simulator:
         self.navigation: Navigation | None = None
         self._people = People(self.scene, options.people, mutexes, options.seed)
         self._speed = options.speed
+        self._most = max(3, math.ceil(CATCH_UP_S * options.speed / STEP_S))
         self._now: float | None = None
         self._owed = 0.0
         self._wall = self._simulated = 0.0
         self._task: _Task | None = None
-        self._sayings: list[tuple[float, Saying, bool]] = []
+        self._speech = Speech(self.scene, self.mishaps)
         self._happened = Happened()
 
     # Time
@@ -131,8 +126,10 @@ class Simulator:
         passed = 0.0 if self._now is None else max(now - self._now, 0.0)
         self._now = now
         self._wall += passed
-        self._owed += min(passed, LAG_S) * self._speed
-        while self._owed >= STEP_S:
+        self._owed = min(self._owed + passed * self._speed, LAG_S * self._speed)
+        for _ in range(self._most):
+            if self._owed < STEP_S:
+                break
             self._owed -= STEP_S
             self._advance(now)
         happened, self._happened = self._happened, Happened()
@@ -147,6 +144,11 @@ class Simulator:
         """Simulated seconds a second, so far."""
         return self._simulated / self._wall if self._wall > 0 else 0.0
 
+    @property
+    def wall(self) -> float:
+        """The clock's seconds since the start."""
+        return self._wall
+
     def _advance(self, now: float) -> None:
         self.time += STEP_S
         self._simulated += STEP_S
@@ -158,7 +160,7 @@ class Simulator:
         self.body.step(STEP_S)
         self.scene.step(STEP_S)
         self._work()
-        self._speak()
+        self._happened.said += self._speech.step(self.time)
         self._happened.deeds += self._people.step(self.time)
 
     # Goals
@@ -207,14 +209,7 @@ class Simulator:
 
     def say(self, saying: Saying) -> None:
         """Begins to say something."""
-        least, each, most = SPEECH_S
-        if self.mishaps.take("reject", "say") or self.mishaps.take("never", "say"):
-            return
-        lies = self.mishaps.take("lie", "say") is not None
-        seconds = min(least + each * len(saying.text), most)
-        self._sayings.append((self.time + seconds, saying, lies))
-
-    # Faults
+        self._speech.say(saying, self.time)
 
     def strike(self, fault: Fault) -> None:
         """Makes something go wrong.
@@ -225,33 +220,8 @@ class Simulator:
         self.struck += 1
         if fault.kind in GOAL_FAULTS:
             self.mishaps.add(fault)
-            return
-        until = (self._now or 0.0) + fault.seconds
-        match fault.kind:
-            case "event":
-                self.scene.make_true(fault.literals)
-            case "move":
-                self.scene.move(fault.object, fault.to)
-            case "add":
-                self.scene.add(fault.object, fault.to)
-            case "remove":
-                self.scene.remove(fault.object)
-            case "blind":
-                self.mishaps.blind_until = until
-            case "stale":
-                self.mishaps.stale_until = until
-            case "silent":
-                self.mishaps.silent_until = until
-            case "unhomed" | "homed":
-                self.driver.homed = fault.kind == "homed"
-            case "battery":
-                self.driver.voltage = fault.value
-            case "runstop":
-                self.driver.runstop(bool(fault.value))
-            case "clock-jump":
-                self.mishaps.clock_s += fault.seconds
-            case _:
-                self.mishaps.clear()
+        elif not self.mishaps.strike(fault, self._now or 0.0):
+            self._strike(fault)
 
     # What takes its time
 
@@ -286,19 +256,19 @@ class Simulator:
                 skills.effect(task.request, self.scene)
         task.done(Reply(task.request.id, not reason, reason))
 
-    def _speak(self) -> None:
-        due = [s for s in self._sayings if s[0] <= self.time]
-        self._sayings = [s for s in self._sayings if s[0] > self.time]
-        for _, saying, lies in due:
-            heard = saying.person not in self.scene.people or self._with(saying.person)
-            if lies:
-                self._happened.said.append(saying)
-            elif heard:
-                told = Literal("alerted-to", (saying.person, saying.message))
-                if "alerted-to" in self.world.domain.predicates and saying.message:
-                    self.scene.make_true([told])
-                self._happened.said.append(saying)
-
-    def _with(self, person: str) -> bool:
-        here = Literal("person-in", (person, self.scene.region))
-        return here in self.scene.state.facts
+    def _strike(self, fault: Fault) -> None:
+        match fault.kind:
+            case "event":
+                self.scene.make_true(fault.literals)
+            case "move":
+                self.scene.move(fault.object, fault.to)
+            case "add":
+                self.scene.add(fault.object, fault.to)
+            case "remove":
+                self.scene.remove(fault.object)
+            case "unhomed" | "homed":
+                self.driver.homed = fault.kind == "homed"
+            case "battery":
+                self.driver.voltage = fault.value
+            case "runstop":
+                self.driver.runstop(bool(fault.value))
