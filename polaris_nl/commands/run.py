@@ -151,19 +151,21 @@ class Keyboard:
     def __init__(self, understanding: Understanding, automaton: Automaton) -> None:
         self._understanding = understanding
         self._automaton = automaton
-        self._lines: queue.SimpleQueue[str] = queue.SimpleQueue()
+        self._commands: queue.SimpleQueue[HumanCommand] = queue.SimpleQueue()
         threading.Thread(target=self._read, name="keyboard", daemon=True).start()
 
     def _read(self) -> None:
+        # Understanding takes its time, above all at first, and the run mustn't wait for it.
+        self._command("stop")
         for line in sys.stdin:
-            self._lines.put(line)
+            command = self._command(line) if line.strip() else None
+            if command is not None:
+                self._commands.put(command)
 
     def commands(self) -> Iterable[HumanCommand]:
         """The commands typed since the last call."""
-        while not self._lines.empty():
-            command = self._command(self._lines.get())
-            if command is not None:
-                yield command
+        while not self._commands.empty():
+            yield self._commands.get()
 
     def _command(self, line: str) -> HumanCommand | None:
         command = command_in(line, self._understanding, self._automaton)

@@ -128,7 +128,13 @@ def _take_new_way(work: Work, report: Report) -> None:
 def _take_command(work: Work, command: HumanCommand) -> None:
     literals = [str(x) for x in command.literals]
     work.events.append(
-        CommandGiven(time=work.now, command=command.kind, literals=literals, source=command.source)
+        CommandGiven(
+            time=work.now,
+            text=_answer(work, command),
+            command=command.kind,
+            literals=literals,
+            source=command.source,
+        )
     )
     if work.state.phase == "halting":
         return  # It ends already.
@@ -142,6 +148,17 @@ def _take_command(work: Work, command: HumanCommand) -> None:
     elif command.kind == "happened":
         negations = {x.negation for x in command.literals}
         work.note(told=(work.state.told - negations) | set(command.literals))
+
+
+def _answer(work: Work, command: HumanCommand) -> str:
+    """What a person hears who commands the run; a stop is answered when all stands still."""
+    phase = work.state.phase
+    if command.kind == "happened" and command.literals:
+        events = listed([work.run.wording.event(x) for x in command.literals])
+        return sentence(f"you say that {events}")
+    if command.kind == "pause" and phase not in ("paused", "halting"):
+        return "I pause; say resume, and I go on."
+    return "I go on." if command.kind == "resume" and phase == "paused" else ""
 
 
 def _idle(work: Work) -> None:

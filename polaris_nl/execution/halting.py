@@ -62,10 +62,6 @@ def halting(work: Work) -> None:
         work.commands += [ZeroVelocity(), RunStop()]
         work.note(run_stopped=True)
     elif work.elapsed >= 2 * settings.halt_s:
-        doubt = "I can't see whether the robot stands still"
-        if moving:
-            doubt = "The robot still moves, whatever I send"
-        work.note(why=f"{work.state.why} {doubt}: press its run-stop button.")
         _over(work)
 
 
@@ -75,11 +71,23 @@ def _stand_still(work: Work, outcome: Outcome, reason: str) -> None:
 
 
 def _over(work: Work) -> None:
-    outcome, reason = work.state.outcome, work.state.why
-    if work.state.run_stopped and work.inputs.observation.moving is False:
-        reason = f"{reason} The robot went on moving, so I used its run-stop; release it by hand."
+    outcome, reason = work.state.outcome, f"{work.state.why} {_last_words(work)}".strip()
+    # Why it halts has been said; what is left to say is how it ended.
+    text = _last_words(work) or "The run is over." if outcome == "halted" else reason
     names = [work.run.automaton.checkpoints[c].name for c in work.state.reached]
     work.events.append(
-        RunEnded(time=work.now, text=reason, outcome=outcome, reason=reason, checkpoints=names)
+        RunEnded(time=work.now, text=text, outcome=outcome, reason=reason, checkpoints=names)
     )
     work.go("done" if outcome == "done" else "halted", reason, why=reason)
+
+
+def _last_words(work: Work) -> str:
+    """What a person has to know of how the robot was brought to stand still, or ""."""
+    if work.state.phase != "halting" or not work.state.run_stopped:
+        return ""
+    moving = work.inputs.observation.moving
+    if moving is None:
+        return "I can't see whether the robot stands still: press its run-stop button."
+    if moving:
+        return "The robot still moves, whatever I send: press its run-stop button."
+    return "The robot went on moving, so I used its run-stop; release it by hand."
