@@ -154,9 +154,7 @@ from tests.logs.writing import goal
 def write(path, pipe, count):
     log = LogWriter(path)
     for number in range(count):
-        if not log.write(goal(number, "I go.")):
-            os._exit(3)
-        os.write(pipe, b"x")
+        os.write(pipe, b"x" if log.write(goal(number, "I go.")) else b"-")
     log.close()
     os.write(pipe, b"c")
     os._exit(0)
@@ -173,13 +171,16 @@ for run in range(int(sys.argv[2])):
     os.close(writing)
     seen = b""
     while len(seen) < min(moment, count):
-        seen += os.read(reading, 1)
+        data = os.read(reading, 1)
+        if not data:
+            sys.exit(f"writer {run} ended by itself")
+        seen += data
     os.kill(child, signal.SIGKILL)
     while data := os.read(reading, 4096):
         seen += data
     os.waitpid(child, 0)
     os.close(reading)
-    told.append(seen.count(b"x"))
+    told.append(seen.rfind(b"x") + 1)  # What is acknowledged has all before it in the file, too.
 print(json.dumps(told))
 """
 
@@ -192,14 +193,15 @@ def test_killing_writers_at_random_moments_keeps_all_that_was_acknowledged(tmp_p
     """
     done = subprocess.run(
         [sys.executable, "-W", "ignore", "-c", KILLER, str(tmp_path), str(KILLS)],
-        capture_output=True, text=True, check=True, timeout=300,
+        capture_output=True, text=True, check=True, timeout=120,
     )  # fmt: skip
     told = json.loads(done.stdout)
     assert len(told) == KILLS
+    assert sum(told) > KILLS
     for run, acknowledged in enumerate(told):
         path = tmp_path / f"{run}.mcap"
         found = numbers(read_log(path).events)
-        assert acknowledged > 0
+
         assert found[:acknowledged] == list(range(acknowledged))
         mended = recover(path)
         assert numbers(read_log(mended.path).events) == found
