@@ -10,9 +10,9 @@ COMPILE := $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --gen
   --no-emit-index-url --no-emit-find-links --no-header --no-annotate --extra voice --extra tui --extra dev
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps
 INTERFACES := $(wildcard polaris_nl/execution/ros/interfaces/*/*/*)
+VOICES := .venv-voices
 
 .DEFAULT_GOAL := help
-VOICES := .venv-voices
 .PHONY: help demo test robot bench score-language score-speech lint format lock clean models
 
 help: ## show this list

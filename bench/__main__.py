@@ -7,7 +7,7 @@ import os
 import platform
 import sys
 
-from bench import command, execution, language, planning, robot, speech, tui
+from bench import command, execution, language, logs, planning, robot, speech, tui
 from bench.table import show
 
 PARTS = {
@@ -16,6 +16,7 @@ PARTS = {
     "speech": speech,
     "planning": planning,
     "execution": execution,
+    "logs": logs,
     "tui": tui,
     "robot": robot,
 }

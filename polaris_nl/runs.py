@@ -13,14 +13,7 @@ from polaris_nl.execution.backend import Robot
 from polaris_nl.execution.clock import Clock, RealClock, VirtualClock
 from polaris_nl.execution.durations import LEARNED_FROM
 from polaris_nl.execution.durations_file import learn
-from polaris_nl.execution.events import (
-    Event,
-    Failed,
-    Heard,
-    Planned,
-    RunStarted,
-    Understood,
-)
+from polaris_nl.execution.events import Event, Failed, Planned, RunStarted
 from polaris_nl.execution.replanner import InlineReplanner, Replanner, ThreadedReplanner
 from polaris_nl.execution.resuming import ResumePoint, resume_point
 from polaris_nl.execution.runner import RunResult, run
@@ -29,12 +22,14 @@ from polaris_nl.execution.simulation import SimulatedRobot
 from polaris_nl.execution.simulation_settings import SimulationSettings
 from polaris_nl.execution.state import HumanCommand, RunPlan
 from polaris_nl.logs.paths import new_log_path
+from polaris_nl.logs.privacy import KEEP_ALL, Privacy
 from polaris_nl.logs.reader import read_log
-from polaris_nl.logs.writer import LogWriter, attachments_of
+from polaris_nl.logs.writer import LogSettings, LogWriter
 from polaris_nl.model.errors import FileError, RunError
 from polaris_nl.planning.plan_json import plan_json
 from polaris_nl.planning.planner import Planner
 from polaris_nl.planning.result import BranchingPlan
+from polaris_nl.run_logs import LogWatch, run_attachments
 
 
 @dataclass(frozen=True)
@@ -46,7 +41,9 @@ class RunOrder:
             people who do nothing.
         live: in real time; otherwise as fast as the machine can, with the same events.
         log: the log's path; a new one in the log folder by default.
-        before: events that led to this program (what was heard and understood), kept in the log.
+        before: events that led to this program (what was heard, understood and changed), kept in the log.
+        privacy: what the log leaves out.
+        halt_without_log: a run whose log can't be written any more halts; otherwise it goes on.
         resume: where an earlier run had come to (`resumable`); None begins at the start.
     """
 
@@ -59,6 +56,8 @@ class RunOrder:
     settings: RunSettings = field(default_factory=RunSettings)
     before: tuple[Event, ...] = ()
     resume: ResumePoint | None = None
+    privacy: Privacy = KEEP_ALL
+    halt_without_log: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,16 +102,16 @@ def run_on(
     plan = RunPlan(order.automaton, order.plan, planner.world, planner.wording, order.settings)
     kept: list[Event] = []
     try:
-        with LogWriter(path, _attachments(order)) as log:
+        with LogWriter(path, attachments(order), LogSettings(privacy=order.privacy)) as log:
+            watch = LogWatch(log, order.halt_without_log)
 
             def sink(event: Event) -> None:
-                sound = not log.failure
                 log.write(event)
                 show(event)
                 if isinstance(event, (RunStarted, *LEARNED_FROM)):
                     kept.append(event)
-                if sound and log.failure:
-                    show(Failed(time=event.time, text=log.failure, what="log"))
+                for text in watch.news():
+                    show(Failed(time=event.time, text=text, what="log"))
 
             for event in _before(order, now):
                 log.write(event)
@@ -122,13 +121,14 @@ def run_on(
             ):
                 result = run(
                     plan,
-                    robot,
+                    watch.over(robot),
                     clock,
                     confirmed=confirmed,
                     sink=sink,
                     commands=commands,
                     replanner=replanner,
                     resume=order.resume,
+                    record=log.write,
                 )
     except RunError:
         if not kept:
@@ -138,7 +138,7 @@ def run_on(
         # It serves later plans alone; that it can't be kept is no matter of this run.
         with suppress(FileError):
             learn(planner.world, kept)
-    return RunReport(result, path, log.failure)
+    return RunReport(result, path, log.failure or log.lost)
 
 
 def run_simulated(
@@ -197,12 +197,14 @@ def _replanner(planner: Planner, clock: Clock) -> Replanner:
 
 
 def _before(order: RunOrder, now: float) -> Iterable[Event]:
-    yield from (e for e in order.before if isinstance(e, Heard | Understood))
-    plan = plan_json(order.plan, order.automaton)
-    yield Planned(time=now, revision=0, status=order.plan.status, plan=plan, ms=order.plan.ms)
+    yield from order.before
+    if not any(isinstance(e, Planned) for e in order.before):
+        plan = plan_json(order.plan, order.automaton)
+        yield Planned(time=now, revision=0, status=order.plan.status, plan=plan, ms=order.plan.ms)
 
 
-def _attachments(order: RunOrder) -> Mapping[str, str]:
+def attachments(order: RunOrder) -> Mapping[str, str]:
+    """What makes an order's log explain itself."""
     world = order.planner.world
     program = program_json(Program(order.automaton, world.domain.name, world.name))
-    return attachments_of(program, world.domain.source, world.source)
+    return run_attachments(program, world, order.settings)

@@ -23,7 +23,15 @@ from polaris_nl.automaton.edit_json import edit_json
 from polaris_nl.automaton.edits import Edit, ReplaceProgram
 from polaris_nl.automaton.history import History
 from polaris_nl.automaton.program import Program, program_json, read_program, write_program
-from polaris_nl.execution.events import Edited, Event, Failed, Heard, Planned, Understood
+from polaris_nl.execution.events import (
+    Edited,
+    Event,
+    Failed,
+    Heard,
+    Interpreted,
+    Planned,
+    Understood,
+)
 from polaris_nl.language.interpretation import Command, Interpretation, Query, Refusal
 from polaris_nl.model.errors import FileError, PolarisError
 from polaris_nl.model.wording import Wording
@@ -137,6 +145,7 @@ class Session:
         self._sink(heard or Heard(time=self._now(), utterance=utterance, source=source))
         interpretation, dialogue = self._interpret(utterance)
         self._dialogue = dialogue
+        self._report_interpreted(interpretation)
         failure, confirmed = "", False
         was_echoed, self._run_echoed = self._run_echoed, False
         if was_echoed and interpretation.command == "run" and interpretation.agrees:
@@ -427,6 +436,17 @@ class Session:
                 status=plan.status,
                 plan=plan_json(plan, snapshot.automaton),
                 ms=plan.ms,
+            )
+        )
+
+    def _report_interpreted(self, interpretation: Interpretation) -> None:
+        readings = interpretation.readings
+        self._sink(
+            Interpreted(
+                time=self._now(),
+                utterance=interpretation.utterance,
+                outcome=interpretation.outcome,
+                readings=[{"text": r.text, "score": r.score, "why": list(r.why)} for r in readings],
             )
         )
 

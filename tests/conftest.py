@@ -12,6 +12,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from tests.checked_plans import CheckedPlans
+from tests.replayed_logs import ReplayedLogs
 
 settings.register_profile(
     "repeatable",
@@ -24,6 +25,7 @@ settings.register_profile(
 settings.load_profile("repeatable")
 
 PLANS = CheckedPlans()
+LOGS = ReplayedLogs()
 ENDING_S = 1.0
 """How long what is ending already may take to be gone."""
 _MODEL_CACHE = Path.home() / ".cache" / "vosk" / "vosk-model-small-en-us-0.15"
@@ -56,6 +58,7 @@ def _watched_plans() -> Iterator[None]:
     """Plans are caught from the first test on."""
     with pytest.MonkeyPatch.context() as patch:
         PLANS.watch(patch)
+        LOGS.watch(patch)
         yield
 
 
@@ -64,6 +67,13 @@ def _right_plans() -> Iterator[None]:
     """Every plan that a test makes is valid, and shortest where it is said to be."""
     yield
     assert PLANS.faults() == []
+
+
+@pytest.fixture(autouse=True)
+def _same_replays() -> Iterator[None]:
+    """Every run that a test logs makes the same decisions when it is replayed."""
+    yield
+    assert LOGS.faults() == []
 
 
 @pytest.fixture(autouse=True)

@@ -8,17 +8,18 @@ import sys
 from argparse import Namespace
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from polaris_nl.automaton.automaton import Automaton
-from polaris_nl.automaton.program import Program, read_program
 from polaris_nl.model.data import shipped_worlds
 from polaris_nl.model.errors import FileError, PolarisError, UsageError
 from polaris_nl.model.world import World
 from polaris_nl.model.world_file import load_world
 from polaris_nl.render.glyphs import DEFAULT_WIDTH
 from polaris_nl.render.layout import Row, wrapped
-from polaris_nl.session import Session
+
+if TYPE_CHECKING:  # Loaded where they are needed: a log is read without them, and much sooner.
+    from polaris_nl.automaton.program import Program
+    from polaris_nl.session import Session
 
 WIDEST = 100
 """Lines longer than this are hard to read."""
@@ -104,6 +105,8 @@ def opened(arguments: Namespace) -> tuple[Program, World]:
     Raises:
         PolarisError: either can't be read.
     """
+    from polaris_nl.automaton.program import read_program
+
     program = read_program(arguments.program)
     return program, world_for(arguments.world, program, arguments.program)
 
@@ -114,6 +117,10 @@ def session_of(arguments: Namespace) -> Session:
     Raises:
         PolarisError: the world or the program can't be read.
     """
+    from polaris_nl.automaton.automaton import Automaton
+    from polaris_nl.automaton.program import read_program
+    from polaris_nl.session import Session
+
     path: Path | None = arguments.program
     program = read_program(path) if path is not None and path.exists() else None
     world = world_for(arguments.world, program, path)

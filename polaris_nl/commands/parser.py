@@ -1,4 +1,4 @@
-"""The command line: sub-commands, options and an example for each. Imports nothing but argparse."""
+"""The command line: sub-commands, options and an example for each. Imports little but argparse."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from polaris_nl import __version__
+from polaris_nl.commands.review_options import add_review_options
 
 
 class _Parser(argparse.ArgumentParser):
@@ -184,6 +185,14 @@ def _planning(adder: _Adder) -> None:
     )
     run.add_argument("--log", metavar="OUT.mcap", type=Path, help="where to write the log")
     run.add_argument(
+        "--leave-out", metavar="WHAT", action="append", default=[],
+        help="keep audio, text (what people said), or any other word out of the log",
+    )  # fmt: skip
+    run.add_argument(
+        "--halt-without-log", action="store_true",
+        help="halt where the log can't be written any more, as on a full disk; else the run goes on",
+    )  # fmt: skip
+    run.add_argument(
         "--resume", metavar="LOG.mcap", type=Path,
         help="go on where the run in this log was interrupted; nothing that is done is done again",
     )  # fmt: skip
@@ -258,21 +267,10 @@ def _speaking(adder: _Adder) -> None:
 def _looking(adder: _Adder) -> None:
     review = adder.add(
         "review",
-        "read a log back",
-        "polaris-nl review lunch.mcap --filter severity=warning",
+        "read a log back, or a folder of logs",
+        'polaris-nl review lunch.mcap --ask "why did it halt?"',
     )
-    review.add_argument("log", metavar="LOG.mcap", type=Path, help="a log that a run has written")
-    review.add_argument(
-        "--filter", metavar="TEXT", action="append", default=[],
-        help="only events with this text, topic=NAME, or severity=warning; may be given several times",
-    )  # fmt: skip
-    review.add_argument("--events", action="store_true", help="list every event")
-    review.add_argument("--step", metavar="N", type=int, help="show event number N whole")
-    review.add_argument("--diff", metavar="OTHER.mcap", type=Path, help="compare with another run")
-    review.add_argument(
-        "--export", choices=("csv", "jsonl"), help="print the events for other programs"
-    )
-    review.add_argument("--recover", action="store_true", help="mend a file that was cut off")
+    add_review_options(review)
     adder.add(
         "domains", "list the domains that ship with Polaris NL", "polaris-nl domains", "catalogue"
     )

@@ -1,168 +1,391 @@
-"""`review`: reads a log back."""
+"""`review`: reads a log back, or a folder of logs."""
 
 from __future__ import annotations
 
 import csv
-import difflib
 import json
 import sys
 from argparse import Namespace
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import asdict
+from functools import cached_property
+from itertools import islice
+from pathlib import Path
+from typing import Any, cast
 
-from polaris_nl.commands.common import print_json, print_rows, print_text, width
+from polaris_nl.commands.common import (
+    complain,
+    print_json,
+    print_rows,
+    print_text,
+    shown_path,
+    width,
+)
+from polaris_nl.commands.review_folder import show_durations, show_folder
+from polaris_nl.commands.review_text import (
+    chain_rows,
+    expected_lines,
+    line_rows,
+    replay_line,
+    report_markdown,
+    run_lines,
+    summary_lines,
+)
 from polaris_nl.execution.events import Event
-from polaris_nl.logs.reader import Log, filtered, read_log
-from polaris_nl.logs.recovery import recover
-from polaris_nl.logs.review import Summary, matcher, rows, story, summary
+from polaris_nl.logs.asking import ask
+from polaris_nl.logs.chain import chain
+from polaris_nl.logs.comparing import compare
+from polaris_nl.logs.diagnosis import diagnoses
+from polaris_nl.logs.expected import expectations
+from polaris_nl.logs.filters import check, matcher, start_of
+from polaris_nl.logs.privacy import privacy_of
+from polaris_nl.logs.reader import Log, filtered, open_log, read_log
+from polaris_nl.logs.recovery import being_written, recover, recovered_path
+from polaris_nl.logs.redacting import redact
+from polaris_nl.logs.review import next_problem, rows, summary
+from polaris_nl.logs.sayings import said
 from polaris_nl.logs.schema import event_json
-from polaris_nl.model.errors import UsageError
-from polaris_nl.model.text import listed
+from polaris_nl.logs.spans import spans
+from polaris_nl.model.errors import LogError, UsageError
+from polaris_nl.model.wording import Wording
 from polaris_nl.render.glyphs import glyphs_for, plain
-from polaris_nl.render.log import event_rows
+from polaris_nl.render.spans import timeline_rows
+
+PAGE = 20
+"""Events on a page."""
+
+__all__ = ["run", "run_lines"]
 
 
 def run(arguments: Namespace) -> int:
     """Shows the summary, or what the options ask for; 1 where the run didn't end well or runs differ."""
+    check(arguments.filter)
+    path: Path = arguments.log
+    if path.is_dir():
+        return _folder(arguments)
     if arguments.recover:
         return _recover(arguments)
-    log = read_log(arguments.log)
-    if arguments.export:
-        return _export(log, arguments)
-    if arguments.diff is not None:
-        return _diff(log, read_log(arguments.diff), arguments.json)
-    if arguments.step is not None:
-        return _step(log, arguments.step, arguments.json)
-    if arguments.filter or arguments.events:
-        return _events(log, arguments)
-    return show_summary(log, arguments.json)
+    if arguments.redact:
+        return _redact(arguments)
+    if arguments.page is not None:
+        return _page(arguments)
+    log = _opened(path)
+    for name, show in _VIEWS.items():
+        asked = getattr(arguments, name)
+        if asked is not None and asked is not False:
+            return show(log, arguments)
+    return _events(log, arguments) if arguments.filter else _summary(log, arguments)
+
+
+def _folder(arguments: Namespace) -> int:
+    if arguments.durations:
+        return show_durations(arguments.log, arguments.json)
+    return show_folder(arguments.log, arguments.json)
+
+
+def _opened(path: Path) -> Log:
+    """A log; one that was cut off is mended beside the original, and what is missing is said."""
+    log = read_log(path)
+    if log.complete:
+        return log
+    if being_written(path):
+        complain("This log is still being written; what follows is what it holds so far.")
+        return log
+    complain(log.missing)
+    target = recovered_path(path)
+    if not target.exists() or target.stat().st_mtime < path.stat().st_mtime:
+        try:
+            recover(path)
+        except LogError as error:
+            complain(str(error))
+            return log
+    complain(f"A whole file of what is there: {shown_path(target)}")
+    return log
 
 
 def _recover(arguments: Namespace) -> int:
     found = recover(arguments.log)
     if arguments.json:
-        print_json({"log": str(found.path), "messages": found.messages, "complete": found.complete})
-    else:
-        state = (
-            "it was whole"
-            if found.complete
-            else "it was cut off, and all that was written is there"
+        print_json(
+            {
+                "log": str(found.path),
+                "messages": found.messages,
+                "complete": found.complete,
+                "missing": found.missing,
+            }
         )
-        print_text(f"{found.messages} messages, {state}: {found.path}")
+    else:
+        print_text(found.missing or "Nothing was missing.")
+        print_text(f"{found.messages} messages are in {shown_path(found.path)}")
     return 0
 
 
-def show_summary(log: Log, as_json: bool) -> int:
-    """The summary of a log."""
-    short = summary(log.events)
-    if as_json:
-        print_json({"log": str(log.path), "complete": log.complete, **asdict(short)})
+def _redact(arguments: Namespace) -> int:
+    path: Path = arguments.log
+    target = arguments.out or path.with_name(f"{path.stem}.redacted.mcap")
+    privacy = privacy_of(arguments.redact)
+    found = redact(path, target, privacy)
+    if arguments.json:
+        print_json({**asdict(found), "path": str(found.path), "without": privacy.words})
     else:
-        for line in summary_lines(log):
+        print_text(
+            f"{shown_path(found.path)} is a copy without {privacy.words}: {found.changed} messages were"
+            f" changed and {found.left_out} left out. The original is as it was."
+        )
+    return 0
+
+
+def _page(arguments: Namespace) -> int:
+    """Some events of a log of any length, read by its index."""
+    if arguments.page < 1:
+        raise UsageError("Pages are counted from 1.")
+    with open_log(arguments.log) as file:
+        start = start_of(list(islice(file.events(), 200)))
+        found = list(file.events((arguments.page - 1) * PAGE, arguments.page * PAGE))
+        pages = -(-len(file) // PAGE)
+    if not found:
+        raise UsageError(f"There is no page {arguments.page}; the log has {pages}.")
+    first = (arguments.page - 1) * PAGE + 1
+    for number, event in enumerate(found, first):
+        if arguments.json:
+            print_json({"number": event.id or number, **event_json(event)})
+        else:
+            print_rows(line_rows(event, start, None, glyphs_for(), width()))
+    if not arguments.json:
+        print_text(f"Page {arguments.page} of {pages}.")
+    return 0
+
+
+def _summary(log: Log, arguments: Namespace) -> int:
+    short = summary(log.events)
+    if arguments.json:
+        value = {"log": str(log.path), "complete": log.complete, "missing": log.missing}
+        print_json(
+            {**value, **asdict(short), "diagnoses": [asdict(d) for d in diagnoses(log.events)]}
+        )
+    else:
+        for line in summary_lines(log, _wording(log)):
             print_text(line)
     return 0 if short.outcome in ("", "done") and log.complete else 1
 
 
-def summary_lines(log: Log) -> list[str]:
-    """A log in a few sentences."""
-    short = summary(log.events)
-    lines = [f'You said: "{plain(text)}"' for text in short.said]
-    lines += [f"Understood: {text}" for text in short.understood if text]
-    return [*lines, *run_lines(log, short)]
-
-
-def run_lines(log: Log, short: Summary) -> list[str]:
-    """What the run of a log did."""
-    lines: list[str] = []
-    if short.plan:
-        lines.append(
-            f"Plan: {short.plan}. {short.goals_done} of {short.goals_sent} actions that were begun got done."
-        )
-    lines += [f"Waited: {text}" for text in short.waited]
-    lines += [f"Decided: {text}" for text in short.transitions]
-    if short.checkpoints:
-        lines.append(f"Reached: {listed(short.checkpoints)}.")
-    lines += [f"Event {number}: {text}" for number, text in short.problems]
-    if short.outcome:
-        lines.append(f"End: {short.outcome}, after {short.seconds:.0f} s. {short.reason}")
-    else:
-        lines.append("The run has no end in this log.")
-    if not log.complete:
-        lines.append(f"The file is cut off; mend it with: polaris-nl review {log.path} --recover")
-    return lines
-
-
 def _events(log: Log, arguments: Namespace) -> int:
-    found = list(filtered(log.events, matcher(arguments.filter)))
-    start = _start(log.events)
+    found = list(filtered(log.events, matcher(arguments.filter, log.events)))
+    start = start_of(log.events)
     for number, event in found:
         if arguments.json:
             print_json({"number": number, **event_json(event)})
         elif event.text or arguments.filter:
-            text = event.text or _whole(event)
-            print_rows(
-                event_rows(event.time - start, event.severity, text, glyphs_for(), width(), number)
-            )
+            print_rows(line_rows(event, start, _wording(log), glyphs_for(), width()))
     if not found and not arguments.json:
         print_text("No event matches; try fewer or shorter filters.")
     return 0
 
 
-def _step(log: Log, number: int, as_json: bool) -> int:
-    if not 1 <= number <= len(log.events):
-        raise UsageError(f"There is no event {number}; the log has {len(log.events)}.")
-    event = log.events[number - 1]
-    if as_json:
-        print_json({"number": number, **event_json(event)})
-        return 0
-    print_rows(
-        event_rows(
-            event.time - _start(log.events),
-            event.severity,
-            event.text,
-            glyphs_for(),
-            width(),
-            number,
+def _ask(log: Log, arguments: Namespace) -> int:
+    reply = ask(log.events, arguments.ask, _wording(log))
+    if arguments.json:
+        print_json(
+            {
+                "question": arguments.ask,
+                "answer": reply.text,
+                "event": reply.number,
+                "chain": [{"number": e.id, "text": said(e, _wording(log))} for e in reply.chain],
+            }
         )
-    )
+        return 0
+    print_text(reply.text)
+    if reply.chain:
+        print()
+        print_rows(chain_rows(reply.chain, log, _wording(log), glyphs_for(), width()))
+    return 0
+
+
+def _timeline(log: Log, arguments: Namespace) -> int:
+    found = spans(log.events)
+    if arguments.json:
+        print_json([{**asdict(s), "seconds": round(s.seconds, 3)} for s in found])
+    else:
+        print_rows(timeline_rows(found, glyphs_for(), width()))
+    return 0
+
+
+def _step(log: Log, arguments: Namespace) -> int:
+    event = _event(log, arguments.step)
+    if arguments.json:
+        print_json({"number": event.id, **event_json(event)})
+        return 0
+    print_rows(line_rows(event, start_of(log.events), _wording(log), glyphs_for(), width()))
     for key, value in event_json(event).items():
-        if key not in ("time", "text"):
+        if key not in ("time", "text", "id") and value not in ("", [], {}, None):
             print_text(json.dumps(value, ensure_ascii=False), f"{key}: ")
     return 0
 
 
-def _diff(one: Log, other: Log, as_json: bool) -> int:
-    lines = list(
-        difflib.unified_diff(
-            story(one.events), story(other.events), one.path.name, other.path.name, lineterm="", n=2
-        )
-    )
-    if as_json:
-        print_json({"equal": not lines, "diff": lines})
-    elif lines:
-        for line in lines:
-            print(plain(line))
+def _next(log: Log, arguments: Namespace) -> int:
+    number = next_problem(log.events, arguments.next)
+    if arguments.json:
+        print_json({"number": number})
+    elif number is None:
+        print_text(f"Nothing went wrong after event {arguments.next}.")
     else:
-        print_text("The two runs did and decided the same.")
-    return 1 if lines else 0
-
-
-def _export(log: Log, arguments: Namespace) -> int:
-    found = [number for number, _ in filtered(log.events, matcher(arguments.filter))]
-    if arguments.export == "jsonl":
-        for number in found:
-            print_json({"number": number, **event_json(log.events[number - 1])})
-        return 0
-    table = rows(log.events)
-    writer = csv.DictWriter(sys.stdout, table[0].keys() if table else ("number",))
-    writer.writeheader()
-    writer.writerows(table[number - 1] for number in found)
+        print_rows(
+            line_rows(
+                _event(log, number), start_of(log.events), _wording(log), glyphs_for(), width()
+            )
+        )
+        print_text(f"After it: --next {number}; what led to it: --chain {number}.")
     return 0
 
 
-def _start(events: Sequence[Event]) -> float:
-    return events[0].time if events else 0.0
+def _chain(log: Log, arguments: Namespace) -> int:
+    event = _event(log, arguments.chain)
+    found = chain(log.events, event.id)
+    if arguments.json:
+        print_json([{"number": e.id, **event_json(e)} for e in found])
+    else:
+        print_rows(chain_rows(found, log, _wording(log), glyphs_for(), width()))
+    return 0
 
 
-def _whole(event: Event) -> str:
-    return f"{type(event).__name__} {json.dumps(event_json(event), ensure_ascii=False)}"
+def _expected(log: Log, arguments: Namespace) -> int:
+    event = _event(log, arguments.expected)
+    found = expectations(log.events, event.id)
+    if arguments.json:
+        print_json([asdict(x) for x in found])
+        return 0
+    print_rows(line_rows(event, start_of(log.events), _wording(log), glyphs_for(), width()))
+    for line in expected_lines(found, _wording(log), glyphs_for()):
+        print_text(line)
+    return 0
+
+
+def _score(log: Log, arguments: Namespace) -> int:
+    from polaris_nl.replays import world_of
+    from polaris_nl.scoring.score import runtime_score
+
+    world = world_of(log)
+    met = runtime_score(log.events, world)
+    if met is None:
+        raise LogError(f"{log.path} holds no run to score; take the log of a run.")
+    count = sum(ok for _, ok in met)
+    if arguments.json:
+        objectives = [{"name": o.name, "met": ok} for o, ok in met]
+        print_json({"met": count, "of": len(met), "objectives": objectives})
+    elif not met:
+        print_text(f"The world {world.name} has no objectives to count.")
+    else:
+        print_text(f"{count} of {len(met)} objectives were met when the run was over.")
+        for objective, ok in met:
+            sign = glyphs_for().good if ok else glyphs_for().bad
+            print_text(f"{sign} {plain(objective.name)}")
+    return 0 if count == len(met) else 1
+
+
+def _diff(log: Log, arguments: Namespace) -> int:
+    other = read_log(arguments.diff)
+    found = compare(log.events, other.events, (log.path.name, other.path.name))
+    if arguments.json:
+        print_json({"equal": not found.diff, **asdict(found)})
+        return 1 if found.diff else 0
+    for line in found.diff:
+        print(plain(line))
+    if not found.diff:
+        print_text("The two runs did and decided the same.")
+    for slower in found.slower:
+        print_text(f"{plain(slower.label)}: {slower.one:.1f} s here, {slower.other:.1f} s there.")
+    one, two = found.seconds
+    print_text(f"Whole run: {one:.1f} s here, {two:.1f} s there.")
+    return 1 if found.diff else 0
+
+
+def _replay(log: Log, arguments: Namespace) -> int:
+    from polaris_nl.replays import replayed
+
+    found = replayed(log.path)
+    if arguments.json:
+        print_json(
+            [
+                {
+                    "decisions": len(r.decisions),
+                    "same": r.difference is None,
+                    "differs_at": r.difference.number if r.difference else None,
+                }
+                for r in found
+            ]
+        )
+    else:
+        for one in found:
+            print_text(replay_line(one, _wording(log)))
+    return 0 if all(r.difference is None for r in found) else 1
+
+
+def _durations(log: Log, arguments: Namespace) -> int:
+    return show_durations(log.path, arguments.json)
+
+
+def _export(log: Log, arguments: Namespace) -> int:
+    found = list(filtered(log.events, matcher(arguments.filter, log.events)))
+    values = ({"number": number, **event_json(event)} for number, event in found)
+    match arguments.export:
+        case "jsonl":
+            for value in values:
+                print_json(value)
+        case "json":
+            print_json({"log": log.path.name, "metadata": log.metadata, "events": list(values)})
+        case "markdown":
+            print(report_markdown(log, _wording(log)))
+        case _:
+            table = rows([event for _, event in found])
+            writer = csv.DictWriter(sys.stdout, rows([_NO_EVENT])[0].keys())
+            writer.writeheader()
+            writer.writerows(table)
+    return 0
+
+
+_NO_EVENT = Event(time=0.0)
+_VIEWS: Mapping[str, Callable[[Log, Namespace], int]] = {
+    "export": _export,
+    "diff": _diff,
+    "ask": _ask,
+    "timeline": _timeline,
+    "step": _step,
+    "next": _next,
+    "chain": _chain,
+    "expected": _expected,
+    "score": _score,
+    "durations": _durations,
+    "replay": _replay,
+    "events": _events,
+}
+
+
+def _event(log: Log, number: int) -> Event:
+    found = next((e for e in log.events if e.id == number), None)
+    if found is None:
+        raise UsageError(f"There is no event {number}; the log has {len(log.events)}.")
+    return found
+
+
+class _Words:
+    """The words of a log's world, loaded when the first of them is needed: that takes a second or two."""
+
+    def __init__(self, log: Log) -> None:
+        self._log = log
+
+    @cached_property
+    def _own(self) -> Wording:
+        from polaris_nl.language.grammar import load_grammar
+        from polaris_nl.language.wording import GrammarWording
+        from polaris_nl.replays import world_of
+
+        world = world_of(self._log)
+        return GrammarWording(world, load_grammar(world.domain))
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._own, name)
+
+
+def _wording(log: Log) -> Wording | None:
+    """How the log's world is put into words; None where the log holds no world."""
+    return cast(Wording, _Words(log)) if "world.yaml" in log.attachments else None

@@ -26,6 +26,7 @@ from polaris_nl.execution.runner import objectives_met
 from polaris_nl.execution.state import HumanCommand
 from polaris_nl.hands_free.running import command_in as command_in
 from polaris_nl.language.understanding import Understanding
+from polaris_nl.logs.privacy import privacy_of
 from polaris_nl.model.errors import RunError, UsageError, did_you_mean
 from polaris_nl.model.text import capital
 from polaris_nl.model.world import World
@@ -52,7 +53,14 @@ def run(arguments: Namespace) -> int:
     with Session(world, program.automaton) as session:
         plan = session.planner.compile(program.automaton)
         order = RunOrder(
-            program.automaton, plan, session.planner, people, arguments.live, arguments.log
+            program.automaton,
+            plan,
+            session.planner,
+            people,
+            arguments.live,
+            arguments.log,
+            privacy=privacy_of(arguments.leave_out),
+            halt_without_log=arguments.halt_without_log,
         )
         if arguments.resume is not None:
             point = resumable(arguments.resume, program.automaton, plan, session.planner)

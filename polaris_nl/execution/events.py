@@ -22,6 +22,10 @@ class Event:
         time: seconds since the epoch; in virtual time, seconds since the run's start plus the
             start's time.
         text: one sentence for a person, or "".
+        id: its number in its log, counted from 1; 0 before it is in one.
+        causes: the numbers of the events that it followed from, the weightiest first.
+
+    Events are equal where they say the same, whatever their place in a log.
     """
 
     topic: ClassVar[str] = "/polaris/event"
@@ -29,6 +33,8 @@ class Event:
 
     time: float
     text: str = ""
+    id: int = field(default=0, compare=False)
+    causes: list[int] = field(default_factory=list, compare=False)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -60,8 +66,25 @@ class Heard(Event):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Interpreted(Event):
+    """An utterance was taken to mean something, before anything was done about it.
+
+    Attributes:
+        readings: all that it may have meant, the one that was chosen first: text, score, and what
+            spoke for and against it.
+    """
+
+    topic: ClassVar[str] = "/polaris/interpreted"
+    severity: ClassVar[Severity] = "debug"
+
+    utterance: str
+    outcome: str
+    readings: list[dict[str, Any]] = field(default_factory=list)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Understood(Event):
-    """An utterance was interpreted; `interpretation` is what `say --json` prints, without program."""
+    """An utterance was answered; `interpretation` is what `say --json` prints, without program."""
 
     topic: ClassVar[str] = "/polaris/understood"
 
@@ -97,7 +120,12 @@ class Planned(Event):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunStarted(Event):
-    """The robot starts to carry a program out, after a yes; `resumed` is where an earlier run had come to."""
+    """The robot starts to carry a program out, after a yes.
+
+    Attributes:
+        resumed: where an earlier run had come to.
+        segments: the plan that is followed: of each segment the transition, goals and actions.
+    """
 
     topic: ClassVar[str] = "/polaris/run"
 
@@ -105,6 +133,7 @@ class RunStarted(Event):
     program: dict[str, Any] = field(default_factory=dict)
     beliefs: list[str] = field(default_factory=list)
     resumed: dict[str, Any] = field(default_factory=dict)
+    segments: list[dict[str, Any]] = field(default_factory=list)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -194,7 +223,11 @@ class RobotReported(Event):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Observed(Event):
-    """What is believed changed: literals that became true or false, and those whose belief grew stale."""
+    """What is believed changed: literals that became true or false, and those whose belief grew stale.
+
+    Attributes:
+        health: how the robot is since now, where that changed: `ready`, or what is the matter.
+    """
 
     topic: ClassVar[str] = "/polaris/beliefs"
     severity: ClassVar[Severity] = "debug"
@@ -203,6 +236,7 @@ class Observed(Event):
     removed: list[str] = field(default_factory=list)
     stale: list[str] = field(default_factory=list)
     source: str = ""
+    health: str | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -318,9 +352,39 @@ class Failed(Event):
     what: str
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stepped(Event):
+    """What one step of the executor was given, as far as it differs from the step before.
+
+    These are for replaying a run, not for reading: a log keeps them beside its events.
+
+    Attributes:
+        added, removed: facts that are believed, or no longer.
+        doubted, settled: atoms of which nothing is known just now, or something again.
+        blind: predicates of which nothing is known; None where that didn't change.
+        health, health_text, moving: of the robot; None where they didn't change.
+        reports, commands, plans: all of this step.
+    """
+
+    topic: ClassVar[str] = "/polaris/inputs"
+    severity: ClassVar[Severity] = "debug"
+
+    added: list[str] = field(default_factory=list)
+    removed: list[str] = field(default_factory=list)
+    doubted: list[str] = field(default_factory=list)
+    settled: list[str] = field(default_factory=list)
+    blind: list[str] | None = None
+    health: str | None = None
+    health_text: str | None = None
+    moving: str | None = None
+    reports: list[dict[str, Any]] = field(default_factory=list)
+    commands: list[dict[str, Any]] = field(default_factory=list)
+    plans: list[dict[str, Any]] = field(default_factory=list)
+
+
 EVENTS: tuple[type[Event], ...] = (
-    Heard, Understood, Edited, Planned, RunStarted, RunEnded, StateChanged, CheckpointReached,
+    Heard, Interpreted, Understood, Edited, Planned, RunStarted, RunEnded, StateChanged, CheckpointReached,
     GoalSent, GoalConfirmed, Skipped, RobotReported, Observed, Waiting, TransitionTaken, Deviated, Recovered,
     Replanned, Halted, CommandGiven, PersonActed, Said, Failed,
 )  # fmt: skip
-"""Every record class; a log has one channel for each that occurs."""
+"""Every record class that a person may want to see; a log has one channel for each that occurs."""

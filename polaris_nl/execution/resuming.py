@@ -77,7 +77,7 @@ def resume_point(
     if any(isinstance(e, RunEnded) and e.outcome == "done" for e in rest):
         raise RunError("The run in this log is done, so nothing is left to go on with.")
     try:
-        state, literals = _state_of(first.resumed, plan), _literals(first.beliefs)
+        state, literals = state_of(first.resumed, plan), _literals(first.beliefs)
         beliefs = State(frozenset(literals))
         acted, unseen = list(map(str, first.resumed.get("acted", ()))), list[str]()
         for event in rest:
@@ -111,7 +111,12 @@ def resumed_json(point: ResumePoint) -> dict[str, Any]:
     }
 
 
-def _state_of(value: Mapping[str, Any], plan: BranchingPlan) -> ExecutorState:
+def state_of(value: Mapping[str, Any], plan: BranchingPlan) -> ExecutorState:
+    """What the executor went on from, from `RunStarted.resumed`; the beginning where that is empty.
+
+    Raises:
+        ValueError, KeyError, TypeError, FormatError: the record is damaged, or of another plan.
+    """
     if not value:
         return ExecutorState()
     state = ExecutorState(

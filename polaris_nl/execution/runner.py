@@ -8,9 +8,11 @@ from dataclasses import dataclass, replace
 from polaris_nl.automaton.program import Program, program_json
 from polaris_nl.execution.backend import Observation, Robot, RunStop, StopRobot, ZeroVelocity
 from polaris_nl.execution.clock import Clock
-from polaris_nl.execution.events import Event, Observed, RunEnded, RunStarted
+from polaris_nl.execution.events import Event, Observed, RunEnded, RunStarted, Stepped
 from polaris_nl.execution.executor import step
+from polaris_nl.execution.inputs import Differences
 from polaris_nl.execution.replanner import NoReplanner, Replanner
+from polaris_nl.execution.replaying import segments_json
 from polaris_nl.execution.resuming import ResumePoint, resumed_json
 from polaris_nl.execution.state import (
     TERMINAL,
@@ -58,6 +60,7 @@ def run(
     commands: Callable[[], Iterable[HumanCommand]] = tuple,
     replanner: Replanner | None = None,
     resume: ResumePoint | None = None,
+    record: Callable[[Stepped], object] = lambda step: None,
 ) -> RunResult:
     """Runs a program to its end.
 
@@ -70,6 +73,7 @@ def run(
         commands: asked at each step for what people have commanded since.
         replanner: plans the rest of a segment anew; without one, every deviation is left to people.
         resume: where an earlier run of the same program had come to.
+        record: is given what each step was given, for replays.
 
     Raises:
         RunError: there is no yes, nothing that can be run, something that the robot has no skill for,
@@ -85,7 +89,10 @@ def run(
     sink(_started(plan, robot, observation, resume, started))
     if resume is not None:
         robot.command(StopRobot())  # It may still be at the goal of an executor that is gone.
-    going = _Going(plan, robot, clock, sink, commands, replanner or NoReplanner())
+    differences = Differences(observation.state)
+    going = _Going(
+        plan, robot, clock, sink, commands, replanner or NoReplanner(), record, differences
+    )
     return going.to_the_end(state, observation)
 
 
@@ -99,6 +106,8 @@ class _Going:
     sink: Callable[[Event], None]
     commands: Callable[[], Iterable[HumanCommand]]
     replanner: Replanner
+    record: Callable[[Stepped], object]
+    differences: Differences
 
     def to_the_end(self, state: ExecutorState, observation: Observation) -> RunResult:
         """Steps until a terminal phase; whatever breaks the run leaves the robot standing."""
@@ -109,7 +118,9 @@ class _Going:
                 now = self.clock.now()
                 observation = self._observed(observation, now)
                 asked = state.request
-                state, orders, events = step(self.plan, state, now, self._inputs(observation))
+                inputs = self._inputs(observation)
+                self.record(self.differences.record(now, inputs))
+                state, orders, events = step(self.plan, state, now, inputs)
                 for order in orders:
                     self.robot.command(order)
                 if state.request is not None and state.request is not asked:
@@ -141,7 +152,8 @@ class _Going:
         found = self.robot.observe()
         removed, added = before.state.difference(found.state)
         stale = (found.state.facts - found.certain) - (before.state.facts - before.certain)
-        if removed or added or stale:
+        health = found.health.kind if found.health != before.health else None
+        if removed or added or stale or health:
             sources = {found.seen[x].source for x in (*added, *removed) if x in found.seen}
             self.sink(
                 Observed(
@@ -150,6 +162,7 @@ class _Going:
                     removed=[str(x) for x in removed],
                     stale=[str(x) for x in sorted(stale)],
                     source=", ".join(sorted(sources)) or self.robot.name,
+                    health=health,
                 )
             )
         return found
@@ -213,6 +226,7 @@ def _started(
         program=program,
         beliefs=[str(f) for f in sorted(observation.state.facts)],
         resumed=resumed_json(resume) if resume is not None else {},
+        segments=segments_json(plan.plan),
     )
 
 

@@ -37,3 +37,19 @@ def new_log_path(name: str, folder: Path | None = None) -> Path:
     while path.exists():
         path, number = folder / f"{stem}_{number}.mcap", number + 1
     return path
+
+
+def part_path(first: Path, number: int) -> Path:
+    """Where a log goes on: `lunch.mcap`, `lunch.part2.mcap`, ..."""
+    return first if number == 1 else first.with_name(f"{first.stem}.part{number}{first.suffix}")
+
+
+def parts_of(path: Path) -> list[Path]:
+    """A log's files, in their order, from the one that is named on."""
+    found = re.fullmatch(r"(.+)\.part(\d+)", path.stem)
+    first = path.with_name(f"{found[1]}{path.suffix}") if found else path
+    number = int(found[2]) if found else 1
+    parts = [path]
+    while (later := part_path(first, number + len(parts))).is_file():
+        parts.append(later)
+    return parts

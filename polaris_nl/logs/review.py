@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -26,10 +25,9 @@ from polaris_nl.execution.events import (
     Understood,
     Waiting,
 )
-from polaris_nl.logs.schema import event_json
+from polaris_nl.logs.filters import matcher as matcher
 
 PROBLEMS = (Deviated, Halted, Failed)
-_LEVELS = ("debug", "info", "warning", "error")
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +82,9 @@ def summary(events: Sequence[Event]) -> Summary:
         transitions=tuple(e.text for e in events if isinstance(e, TransitionTaken) and e.when),
         goals_sent=sum(isinstance(e, GoalSent) for e in events),
         goals_done=sum(isinstance(e, GoalConfirmed) for e in events),
-        problems=tuple((n, e.text) for n, e in enumerate(events, 1) if isinstance(e, PROBLEMS)),
+        problems=tuple(
+            (e.id or n, e.text) for n, e in enumerate(events, 1) if isinstance(e, PROBLEMS)
+        ),
         waited=tuple(e.text for e in events if isinstance(e, Waiting)),
         commands=tuple(e.command for e in events if isinstance(e, CommandGiven)),
         started=first,
@@ -93,27 +93,10 @@ def summary(events: Sequence[Event]) -> Summary:
     )
 
 
-def matcher(filters: Sequence[str]) -> Callable[[Event], bool]:
-    """A test for events: `topic=goal`, `severity=warning` (that and worse), or text; all must hold."""
-    tests: list[Callable[[Event], bool]] = [_test(text) for text in filters]
-    return lambda event: all(test(event) for test in tests)
-
-
-def _test(text: str) -> Callable[[Event], bool]:
-    key, _, value = text.partition("=")
-    wanted = value.lower()
-    if value and key == "topic":
-        return lambda e: wanted in e.topic.lower()
-    if value and key == "severity" and wanted in _LEVELS:
-        return lambda e: _LEVELS.index(e.severity) >= _LEVELS.index(wanted)
-    everywhere = (value or key).lower()
-    return lambda e: everywhere in json.dumps(event_json(e), ensure_ascii=False).lower()
-
-
 def next_problem(events: Sequence[Event], after: int = 0) -> int | None:
     """The number of the first problem after an event, or None."""
-    found = (n for n, e in enumerate(events, 1) if n > after and isinstance(e, PROBLEMS))
-    return next(found, None)
+    found = (e.id or n for n, e in enumerate(events, 1) if isinstance(e, PROBLEMS))
+    return next((n for n in found if n > after), None)
 
 
 def story(events: Sequence[Event]) -> list[str]:
@@ -145,7 +128,7 @@ def rows(events: Sequence[Event]) -> list[dict[str, Any]]:
     """Events as flat rows for export."""
     return [
         {
-            "number": number,
+            "number": event.id or number,
             "time": event.time,
             "kind": type(event).__name__,
             "topic": event.topic,

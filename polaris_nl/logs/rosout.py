@@ -33,11 +33,30 @@ uint32 nanosec
 LEVELS: Mapping[str, int] = {"debug": 10, "info": 20, "warning": 30, "error": 40}
 
 
+NAME = "polaris"
+
+
 def log_message(event: Event, nanoseconds: int) -> bytes:
     """The CDR bytes of an event's text."""
-    body = struct.pack("<iIB", nanoseconds // 10**9, nanoseconds % 10**9, LEVELS[event.severity])
-    for text in ("polaris", event.text, type(event).__name__, ""):
-        data = text.encode() + b"\0"
+    return encoded(nanoseconds, LEVELS[event.severity], event.text, type(event).__name__)
+
+
+def encoded(nanoseconds: int, level: int, text: str, kind: str) -> bytes:
+    """The CDR bytes of a line: time, level, text, and the name of what it is about."""
+    body = struct.pack("<iIB", nanoseconds // 10**9, nanoseconds % 10**9, level)
+    for field in (NAME, text, kind, ""):
+        data = field.encode("utf-8", "backslashreplace") + b"\0"
         body += b"\0" * (-len(body) % 4) + struct.pack("<I", len(data)) + data
     body += b"\0" * (-len(body) % 4) + struct.pack("<I", 0)
-    return b"\0\x01\0\0" + body
+    return b"\0\1\0\0" + body
+
+
+def parsed(data: bytes) -> tuple[int, str, str]:
+    """Level, text and kind of a line."""
+    body, at, fields = data[4:], 9, []
+    for _ in range(3):
+        at += -at % 4
+        (length,) = struct.unpack_from("<I", body, at)
+        fields.append(body[at + 4 : at + 4 + length - 1].decode("utf-8", "replace"))
+        at += 4 + length
+    return body[8], fields[1], fields[2]

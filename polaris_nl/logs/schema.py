@@ -4,16 +4,22 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping
+from types import NoneType, UnionType
 from typing import Any, get_args, get_origin, get_type_hints
 
-from polaris_nl.execution.events import EVENTS, Event
+from polaris_nl.execution.events import EVENTS, Event, Stepped
 
-BY_TOPIC: Mapping[str, type[Event]] = {event.topic: event for event in EVENTS}
+_ALL: tuple[type[Event], ...] = (*EVENTS, Stepped)
+BY_TOPIC: Mapping[str, type[Event]] = {event.topic: event for event in _ALL}
+_NAMES: Mapping[type[Event], tuple[str, ...]] = {
+    kind: tuple(f.name for f in dataclasses.fields(kind)) for kind in BY_TOPIC.values()
+}
 _PLAIN: Mapping[Any, dict[str, Any]] = {
     str: {"type": "string"},
     int: {"type": "integer"},
     float: {"type": "number"},
     bool: {"type": "boolean"},
+    NoneType: {"type": "null"},
     Any: {},
 }
 
@@ -40,7 +46,12 @@ def schema_of(event: type[Event]) -> dict[str, Any]:
 
 def event_json(event: Event) -> dict[str, Any]:
     """An event as a JSON value."""
-    return {f.name: getattr(event, f.name) for f in dataclasses.fields(event)}
+    return {name: getattr(event, name) for name in names_of(type(event))}
+
+
+def names_of(kind: type[Event]) -> tuple[str, ...]:
+    """The names of an event class's fields."""
+    return _NAMES[kind]
 
 
 def event_of(topic: str, value: Mapping[str, Any]) -> Event | None:
@@ -51,7 +62,7 @@ def event_of(topic: str, value: Mapping[str, Any]) -> Event | None:
     kind = BY_TOPIC.get(topic)
     if kind is None:
         return None
-    known = {f.name for f in dataclasses.fields(kind)}
+    known = names_of(kind)
     try:
         return kind(**{k: v for k, v in value.items() if k in known})
     except TypeError:
@@ -62,6 +73,8 @@ def _type(hint: Any) -> dict[str, Any]:
     if hint in _PLAIN:
         return dict(_PLAIN[hint])
     origin, args = get_origin(hint), get_args(hint)
+    if origin is UnionType:
+        return {"anyOf": [_type(x) for x in args]}
     if origin is list:
         return {"type": "array", "items": _type(args[0])}
     return {"type": "object"}

@@ -1,41 +1,51 @@
-"""Writes events to MCAP so that a crash loses nothing that was written.
+"""Writes events to MCAP so that a crash loses nothing that was written, and the disk delays nobody.
 
-While a run lasts, the file is a journal: no chunks, every message flushed, and forced to the disk
-at the moments that matter. On closing it is written anew with compression and an index, and moved
-into the journal's place.
+While a run lasts, its file is a journal (`logs/journal.py`): each event goes to the system at once, in the
+caller's thread, which takes some microseconds; what may take long, forcing the file to the disk and
+compressing it, is done in a thread of the log's own. Where the disk is busy for so long that even the
+first could take time, events queue up in memory, up to a limit, and what doesn't fit is counted and said.
 """
 
 from __future__ import annotations
 
 import contextlib
 import json
-import os
 import threading
-from collections.abc import Mapping
-from dataclasses import dataclass
+import time
+from collections import Counter, deque
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from types import TracebackType
-from typing import IO, Any
-
-from mcap.writer import CompressionType, Writer
+from typing import Any
 
 from polaris_nl import __version__
 from polaris_nl.execution.events import (
     Edited,
     Event,
+    Failed,
     GoalConfirmed,
     GoalSent,
     Halted,
     RunEnded,
     RunStarted,
+    Stepped,
 )
 from polaris_nl.logs import rosout
-from polaris_nl.logs.schema import event_json, schema_of
+from polaris_nl.logs.finalising import finalise
+from polaris_nl.logs.journal import Journal
+from polaris_nl.logs.paths import part_path
+from polaris_nl.logs.privacy import KEEP_ALL, Privacy
+from polaris_nl.logs.schema import names_of, schema_of
+from polaris_nl.logs.tracing import Tracer
 from polaris_nl.model.errors import LogError
 
-PROFILE = "ros2"
+SCHEMA = "polaris-log/1"
 FORCED: tuple[type[Event], ...] = (Edited, GoalSent, GoalConfirmed, Halted, RunStarted, RunEnded)
 """Events after which the file is forced to the disk, so that even a power cut keeps them."""
+AUDIO = "audio/"
+_UNCHANGED: tuple[object, ...] = (None, [], 0)
+_encode = json.JSONEncoder(ensure_ascii=False, separators=(",", ":")).encode
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,27 +58,73 @@ class RawKind:
     message_encoding: str = "cdr"
 
 
+@dataclass(frozen=True, slots=True)
+class LogSettings:
+    """How a log is kept.
+
+    Attributes:
+        part_bytes: when a log goes on in another file, in bytes; it does so at midnight, too.
+        patience_s: how long a caller waits for another one to have written, in seconds.
+        slow_s: how long the disk may take before it is spared by queueing, in seconds.
+        queue: how many messages may wait in memory; robot messages and inputs get half of it.
+        privacy: what isn't kept.
+    """
+
+    part_bytes: int = 256 << 20
+    patience_s: float = 0.0005
+    slow_s: float = 0.05
+    queue: int = 20_000
+    privacy: Privacy = KEEP_ALL
+
+
+@dataclass(slots=True)
+class _Disk:
+    """What the log's own thread is at: since when it forces the file to the disk, and what is asked of it."""
+
+    since: float | None = None
+    wanted: bool = False
+    closing: bool = False
+    old: list[Journal] = field(default_factory=list)
+
+
 class LogWriter:
     """An open log. Safe to use from several threads.
 
     Args:
-        path: the file to make; it must not exist.
-        attachments: files that make the log explain itself elsewhere, by name: program, domain,
+        path: the file to make; it must not exist. Later parts get names of their own.
+        attachments: texts that make the log explain itself elsewhere, by name: program, domain,
             world.
+        settings: how it is kept.
+
+    Attributes:
+        failure: why nothing is written any more, or "".
+        lost: what is missing since the disk was too slow, or "".
+        count: how many events were written.
 
     Raises:
         LogError: the file can't be made.
     """
 
-    def __init__(self, path: Path, attachments: Mapping[str, str] | None = None) -> None:
+    def __init__(
+        self,
+        path: Path,
+        attachments: Mapping[str, str] | None = None,
+        settings: LogSettings | None = None,
+    ) -> None:
         self.path = path
-        self.failure = ""
+        self.failure = self.lost = ""
         self.count = 0
+        self._settings = settings or LogSettings()
+        self._attachments = self._settings.privacy.of_attachments(attachments or {})
+        self._tracer = Tracer()
         self._lock = threading.Lock()
-        self._channels: dict[str, int] = {}
-        self._last_time = 0
+        self._backlog: deque[Callable[[], None]] = deque()
+        self._dropped: Counter[str] = Counter()
+        self._part, self._until, self._closed = 1, 0, False
+        self._disk = _Disk()
+        self._wake = threading.Condition()
         try:
-            self._file: IO[bytes] = path.open("xb")
+            self._journal = self._begin(path)
         except FileExistsError as error:
             raise LogError(
                 f"There is a file {path} already; choose another name for the log."
@@ -77,43 +133,19 @@ class LogWriter:
             raise LogError(
                 f"Can't write the log {path}: {error.strerror}. Choose another place."
             ) from error
-        self._writer = Writer(self._file, use_chunking=False, compression=CompressionType.NONE)
-        try:
-            self._start(attachments or {})
-        except OSError as error:
-            self._fail(error)
-
-    def _start(self, attachments: Mapping[str, str]) -> None:
-        self._writer.start(profile=PROFILE, library=f"polaris-nl {__version__}")
-        self._writer.add_metadata("polaris", {"version": __version__, "schema": "polaris-log/1"})
-        for name, text in attachments.items():
-            kind = "application/json" if name.endswith(".json") else "text/plain"
-            self._writer.add_attachment(0, 0, name, kind, text.encode())
-        definition = rosout.DEFINITION.encode()
-        schema = self._writer.register_schema(rosout.TYPE, "ros2msg", definition)
-        qos = {"offered_qos_profiles": ""}
-        self._channels[rosout.TOPIC] = self._writer.register_channel(
-            rosout.TOPIC, "cdr", schema, qos
-        )
-        self._flush()
+        self._thread = threading.Thread(target=self._tend, name="log", daemon=True)
+        self._thread.start()
 
     def write(self, event: Event) -> bool:
         """Writes an event.
 
         Returns:
-            Whether it is in the file. After a failure (`failure` says which) nothing more is
-            written, and what was written stays.
+            Whether it is in the file now. Where it isn't, it waits for the disk, was dropped (`lost`
+            says so later), or writing has failed: then `failure` says why, nothing more is written,
+            and what was written stays.
         """
-        with self._lock:
-            if self.failure or self._file.closed:
-                return False
-            try:
-                self._write(event)
-            except OSError as error:
-                self._fail(error)
-                return False
-            self.count += 1
-            return True
+        often = isinstance(event, Stepped)
+        return self._hand_over(lambda: self._write(event), event.topic, often)
 
     __call__ = write
 
@@ -129,24 +161,9 @@ class LogWriter:
         Returns:
             Whether it is in the file, as for `write`.
         """
-        with self._lock:
-            if self.failure or self._file.closed:
-                return False
-            try:
-                if topic not in self._channels:
-                    schema = self._writer.register_schema(
-                        kind.name, kind.encoding, kind.definition.encode()
-                    )
-                    qos = {"offered_qos_profiles": ""}
-                    self._channels[topic] = self._writer.register_channel(
-                        topic, kind.message_encoding, schema, qos
-                    )
-                self._message(self._channels[topic], max(int(time * 1e9), 0), data)
-                self._flush()
-            except OSError as error:
-                self._fail(error)
-                return False
-            return True
+        if self._settings.privacy.in_bytes(data):
+            return False
+        return self._hand_over(lambda: self._write_raw(topic, kind, time, data), topic, True)
 
     def attach(self, name: str, kind: str, data: bytes, time: float) -> bool:
         """Adds a file, such as the sound of what was said.
@@ -158,36 +175,25 @@ class LogWriter:
             time: when it was made, in seconds since the epoch.
 
         Returns:
-            Whether it is in the log.
+            Whether it is in the log; also False where sound isn't to be kept.
         """
-        with self._lock:
-            if self.failure or self._file.closed:
-                return False
-            try:
-                nanoseconds = max(int(time * 1e9), 0)
-                self._writer.add_attachment(nanoseconds, nanoseconds, name, kind, data)
-                self._flush()
-            except OSError as error:
-                self._fail(error)
-                return False
-            return True
+        if kind.startswith(AUDIO) and not self._settings.privacy.sound:
+            return False
+        nanoseconds = max(int(time * 1e9), 0)
+        return self._hand_over(
+            lambda: self._journal.attach(name, kind, data, nanoseconds), name, False
+        )
 
     def close(self) -> None:
         """Ends the log and makes the compressed, indexed file of it; the journal stays where that fails."""
         with self._lock:
-            if self._file.closed:
+            if self._closed:
                 return
-            with contextlib.suppress(OSError):
-                if not self.failure:
-                    self._writer.finish()  # type: ignore[no-untyped-call] # mcap leaves it out
-                    self._force()
-            with contextlib.suppress(OSError):
-                self._file.close()
-        if not self.failure:
-            try:
-                finalise(self.path)
-            except (OSError, LogError) as error:
-                self.failure = f"The log {self.path} is whole, but couldn't be compressed: {error}."
+            self._closed = True
+        with self._wake:
+            self._disk.closing = True
+            self._wake.notify()
+        self._thread.join()
 
     def __enter__(self) -> LogWriter:
         return self
@@ -200,70 +206,194 @@ class LogWriter:
     ) -> None:
         self.close()
 
-    def _write(self, event: Event) -> None:
-        nanoseconds = max(int(event.time * 1e9), 0)
-        data = json.dumps(event_json(event), ensure_ascii=False).encode("utf-8", "backslashreplace")
-        self._message(self._channel(event), nanoseconds, data)
-        if event.text:
-            message = rosout.log_message(event, nanoseconds)
-            self._message(self._channels[rosout.TOPIC], nanoseconds, message)
-        self._flush()
-        if isinstance(event, FORCED):
-            self._force()
+    # In the callers' threads
 
-    def _message(self, channel: int, nanoseconds: int, data: bytes) -> None:
-        self._writer.add_message(channel, nanoseconds, data, nanoseconds, self.count)
+    def _hand_over(self, work: Callable[[], None], topic: str, often: bool) -> bool:
+        """Does what appends a record now, or queues it where that could take long."""
+        since = self._disk.since
+        busy = since is not None and time.monotonic() - since > self._settings.slow_s
+        if not busy and (
+            self._lock.acquire(blocking=False)
+            or self._lock.acquire(timeout=self._settings.patience_s)
+        ):
+            try:
+                if not self._backlog:  # Else it would overtake what waits.
+                    return not self._closed and self._done(work)
+            finally:
+                self._lock.release()
+        if self._closed or self.failure:
+            return False
+        room = self._settings.queue // 2 if often else self._settings.queue
+        if len(self._backlog) < room:
+            self._backlog.append(work)
+        else:
+            self._dropped[topic] += 1
+        with self._wake:
+            self._wake.notify()
+        return False
 
-    def _channel(self, event: Event) -> int:
-        if event.topic not in self._channels:
-            schema = schema_of(type(event))
-            number = self._writer.register_schema(
-                schema["title"], "jsonschema", json.dumps(schema).encode()
-            )
-            self._channels[event.topic] = self._writer.register_channel(event.topic, "json", number)
-        return self._channels[event.topic]
-
-    def _flush(self) -> None:
-        self._writer.flush()  # type: ignore[no-untyped-call] # mcap leaves it out
-        self._file.flush()
-
-    def _force(self) -> None:
-        os.fsync(self._file.fileno())
+    def _done(self, work: Callable[[], None]) -> bool:
+        if self.failure:
+            return False
+        try:
+            work()
+        except OSError as error:
+            self._fail(error)
+            return False
+        return True
 
     def _fail(self, error: OSError) -> None:
         self.failure = (
-            f"The log {self.path} can't be written any more: {error.strerror}. "
-            "The run goes on without it."
+            f"The log {self.path} can't be written any more ({error.strerror}); what happened before"
+            " is in it. Make room on the disk."
         )
 
+    def _write(self, event: Event) -> None:
+        event = self._settings.privacy.of_event(event)
+        nanoseconds = max(int(event.time * 1e9), 0)
+        value = {name: getattr(event, name) for name in names_of(type(event))}
+        self._turn_over(nanoseconds)
+        if isinstance(event, Stepped):  # In most steps nothing has changed.
+            value = {name: x for name, x in value.items() if x not in _UNCHANGED}
+        else:
+            value["id"], value["causes"] = self._tracer.take(event)
+            self.count += 1
+        data = _encode(value).encode("utf-8", "backslashreplace")
+        journal = self._journal
+        channel = journal.channel(event.topic) or self._add_channel(journal, event)
+        records = journal.message(channel, self.count, nanoseconds, data)
+        if event.text:
+            said = rosout.log_message(event, nanoseconds)
+            records += journal.message(
+                journal.channel(rosout.TOPIC) or 0, self.count, nanoseconds, said
+            )
+        journal.append(records)
+        if isinstance(event, FORCED):
+            self._disk.wanted = True
+            with self._wake:
+                self._wake.notify()
 
-def finalise(path: Path, source: Path | None = None) -> None:
-    """Makes an indexed, compressed file of a journal and moves it into place.
+    def _write_raw(self, topic: str, kind: RawKind, time: float, data: bytes) -> None:
+        nanoseconds = max(int(time * 1e9), 0)
+        self._turn_over(nanoseconds)
+        journal = self._journal
+        channel = journal.channel(topic) or journal.add_channel(
+            topic, kind.message_encoding, kind.name, kind.encoding, kind.definition.encode()
+        )
+        journal.append(journal.message(channel, self.count, nanoseconds, data))
 
-    Args:
-        path: the file to make.
-        source: the journal; `path` itself by default.
+    @staticmethod
+    def _add_channel(journal: Journal, event: Event) -> int:
+        schema = schema_of(type(event))
+        text = json.dumps(schema).encode()
+        return journal.add_channel(event.topic, "json", schema["title"], "jsonschema", text)
 
-    Raises:
-        OSError: it can't be written; the journal is untouched.
-    """
-    from polaris_nl.logs.recovery import copy_records
+    def _turn_over(self, nanoseconds: int) -> None:
+        """Goes on in another file where the day is over, or the file is long enough."""
+        if nanoseconds < self._until and self._journal.size < self._settings.part_bytes:
+            return
+        first, self._until = not self._until, _midnight_after(nanoseconds)
+        if first:
+            return
+        self._part += 1
+        before, self._journal = self._journal, self._begin(part_path(self.path, self._part))
+        self._disk.old.append(before)
+        with self._wake:
+            self._wake.notify()
 
-    temporary = path.with_name(f".{path.name}.new")
-    try:
-        with temporary.open("w+b") as out:
-            copy_records(source or path, out)
-            out.flush()
-            os.fsync(out.fileno())
-        temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)
+    def _begin(self, path: Path) -> Journal:
+        journal = Journal(path)
+        about = {"version": __version__, "schema": SCHEMA, "part": str(self._part)}
+        about["first_event"] = str(self.count + 1)
+        if self._part > 1:
+            about["follows"] = part_path(self.path, self._part - 1).name
+        if self._settings.privacy is not KEEP_ALL:
+            about["left_out"] = self._settings.privacy.words
+        journal.metadata("polaris", about)
+        for name, text in self._attachments.items():
+            kind = "application/json" if name.endswith(".json") else "text/plain"
+            journal.attach(name, kind, text.encode())
+        definition = rosout.DEFINITION.encode()
+        journal.add_channel(rosout.TOPIC, "cdr", rosout.TYPE, "ros2msg", definition)
+        return journal
+
+    # In the log's own thread
+
+    def _tend(self) -> None:
+        disk = self._disk
+        while True:
+            with self._wake:
+                while not (disk.wanted or disk.closing or disk.old or self._backlog):
+                    self._wake.wait()
+            if disk.wanted:
+                disk.wanted = False
+                self._force()
+            self._work_off()
+            while disk.old:
+                self._end(disk.old.pop(0))
+            if disk.closing and not self._backlog:
+                self._end(self._journal)
+                return
+
+    def _force(self) -> None:
+        self._disk.since = time.monotonic()
+        try:
+            self._journal.force()
+        except OSError as error:
+            if not self._closed:
+                self._fail(error)
+        finally:
+            self._disk.since = None
+
+    def _work_off(self) -> None:
+        while self._backlog:
+            with self._lock:
+                self._done(self._backlog[0])
+                self._backlog.popleft()
+        if self._dropped and not self.failure:
+            with self._lock:
+                dropped, self._dropped = self._dropped, Counter()
+                words = ", ".join(f"{n} of {topic}" for topic, n in sorted(dropped.items()))
+                self.lost = f"The disk was too slow for a while; missing in the log: {words}."
+                missing = Failed(time=time.time(), text=self.lost, what="log")
+                self._done(lambda: self._write(missing))
+
+    def _end(self, journal: Journal) -> None:
+        with contextlib.suppress(OSError):
+            if not self.failure:
+                journal.end()
+                journal.force()
+        with contextlib.suppress(OSError):
+            journal.close()
+        if not self.failure:
+            self._finalise(journal.path)
+
+    def _finalise(self, path: Path) -> None:
+        try:
+            finalise(path)
+        except (OSError, LogError) as error:
+            why = error.strerror if isinstance(error, OSError) else str(error)
+            self.failure = f"The log {path} is whole, but couldn't be compressed: {why}."
 
 
-def attachments_of(program: Mapping[str, Any], domain: str, world: str) -> dict[str, str]:
-    """The attachments that make a log explain itself: program, domain and world as text."""
-    return {
+def _midnight_after(nanoseconds: int) -> int:
+    """When the day of a time is over, where this computer is, in nanoseconds since the epoch."""
+    day = time.localtime(nanoseconds // 10**9)
+    return int(time.mktime((*day[:2], day.tm_mday + 1, 0, 0, 0, 0, 0, -1))) * 10**9
+
+
+def attachments_of(
+    program: Mapping[str, Any],
+    domain: str,
+    world: str,
+    settings: Mapping[str, Any] | None = None,
+) -> dict[str, str]:
+    """The attachments that make a log explain itself: program, domain, world and settings as text."""
+    texts = {
         "program.polaris.json": json.dumps(program, indent=2),
         "domain.pddl": domain,
         "world.yaml": world,
     }
+    if settings is not None:
+        texts["settings.json"] = json.dumps(settings, indent=2)
+    return texts

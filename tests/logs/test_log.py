@@ -192,34 +192,21 @@ def test_killing_the_writer_loses_no_event_that_was_written(tmp_path: Path, mome
     assert recover(path).messages == len(goals)
 
 
-def test_a_full_disk_is_said_once_and_loses_nothing_before_it(tmp_path: Path) -> None:
+def test_a_full_disk_is_said_once_and_loses_nothing_before_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     path = tmp_path / "a.mcap"
     log = LogWriter(path)
     log.write(EXAMPLE[0])
 
-    class Full:
-        closed = False
+    def full(_: bytes) -> None:
+        raise OSError(28, "No space left on device")
 
-        def write(self, _: bytes) -> int:
-            raise OSError(28, "No space left on device")
-
-        def flush(self) -> None:
-            raise OSError(28, "No space left on device")
-
-        def fileno(self) -> int:
-            return -1
-
-        def close(self) -> None:
-            self.closed = True
-
-    real = log._file
-    log._file = Full()  # type: ignore[assignment]
-    log._writer._Writer__stream = Full()  # type: ignore[attr-defined]
+    monkeypatch.setattr(log._journal, "append", full)
     assert not log.write(EXAMPLE[1])
     assert "No space left on device" in log.failure
     assert not log.write(EXAMPLE[2])
     log.close()
-    real.close()
     assert read_log(path).events == EXAMPLE[:1]
 
 

@@ -84,7 +84,7 @@ def test_without_waiting_the_plan_is_pending_and_comes_later(
 
 def test_everything_is_reported_as_events_in_order(session: Watched) -> None:
     session.say(CUP)
-    assert session.kinds() == ["Heard", "Edited", "Planned", "Understood"]
+    assert session.kinds() == ["Heard", "Interpreted", "Edited", "Planned", "Understood"]
     heard, edited, planned, understood = session.events
     assert isinstance(heard, Heard)
     assert isinstance(edited, Edited)
