@@ -1,9 +1,9 @@
 """Ends a translation that takes too long or that nobody wants any more.
 
 The translator is a library in this process, so it can't be killed as the search can. What can take
-for ever in it is counting out combinations of things: each that it finds goes through its queue, its
-`Action.instantiate` and its `translate_strips_operator`. These three are made to look at the time.
-Everything else that it does is small beside their results.
+for ever in it is counting out combinations: each combination of things goes through its queue, its
+`Action.instantiate` and its `translate_strips_operator`, and each of negative goals is a `deepcopy`.
+These four are made to look at the time. Everything else that it does is small beside their results.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from polaris_nl.model.errors import PlanningError
 
 LIMIT_S = 10.0
 """How long one translation may take."""
-EVERY = 500
+EVERY = 200
 """Combinations between two looks at the time: some milliseconds."""
 _TOO_LONG = (
     "There are too many ways to combine the things that this may need; ask for less at once, or use a "
@@ -85,6 +85,7 @@ def watch(parts: Mapping[str, ModuleType]) -> None:
         "Queue": (parts["build_model"], Queue),
         "instantiate": (parts["pddl"].Action, None),
         "translate_strips_operator": (parts["main"], None),
+        "deepcopy": (parts["main"], None),
     }
     for name, (owner, new) in replace.items():
         setattr(owner, name, new or _counted(getattr(owner, name)))

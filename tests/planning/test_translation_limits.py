@@ -6,9 +6,11 @@ import threading
 
 import pytest
 
+from polaris_nl.model.errors import PlanningError
 from polaris_nl.model.world_file import world_of_texts
 from polaris_nl.planning import grounding, translate
 from polaris_nl.planning.budget import never
+from polaris_nl.planning.pddl_text import domain_text, problem_text
 from polaris_nl.planning.planner import Planner
 from polaris_nl.planning.segments import SegmentResult
 
@@ -100,3 +102,16 @@ def texts() -> tuple[str, str]:
     domain = """(define (domain small) (:predicates (a) (b))
       (:action go :parameters () :precondition (a) :effect (b)))"""
     return domain, "(define (problem p) (:domain small) (:init (a)) (:goal (b)))"
+
+
+def test_goals_that_rule_much_out_at_once_end_in_time(
+    care_home: Planner, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # Each is one value of a variable less, and the translator counts all combinations of the others.
+    monkeypatch.setattr(grounding, "LIMIT_S", 0.5)
+    world = care_home.world
+    surfaces = [e.name for e in world.of_type("surface")]
+    things = [e.name for e in world.of_type("object")]
+    goals = facts(" ".join(f"(not (at {o} {s}))" for o in things for s in surfaces))
+    with pytest.raises(PlanningError, match="too many ways"):
+        translate.translate(domain_text(world.domain), problem_text(world, world.initial, goals))
