@@ -241,13 +241,17 @@ def _silent(
     fresh: Callable[[float], bool],
     how: Sight,
 ) -> Iterator[_Look]:
-    """What detectors don't say any more though its subject is in sight: it is false now."""
+    """What detectors didn't say though its subject was in sight even after that: it is false now.
+
+    A subject that was seen only before the detectors spoke may have gone out of sight since: as the robot
+    leaves a room, silence tells nothing.
+    """
     for variable, belief in memory.beliefs.items():
         watched = variable.predicate in how.detects and variable.args and variable not in told
         if not watched or belief.value is None or variable.predicate in PLACES:
             continue
         marker = percepts.markers.get(variable.args[0])
-        if marker is not None and fresh(marker.stamp):
+        if marker is not None and marker.stamp >= percepts.detected_at and fresh(marker.stamp):
             yield variable, None, percepts.detected_at, "detector"
 
 

@@ -197,6 +197,26 @@ def test_detectors_tell_what_geometry_cannot_and_their_silence_means_false(care:
     assert lit("(open laundry-basket)") in facts(memory)
 
 
+def test_leaving_a_room_makes_nothing_false_there(care: Planner) -> None:
+    s = scene(care)
+    full = lit("(is-full tray)")
+    look = replace(
+        at(s, "room-1", T0),
+        markers={"tray": seen(s, "tray", "object", "table", T0)},
+        detected={full: Detected(full, T0)},
+    )
+    memory = watch(s, remembered(care.world, T0), look, T0, 1.0)
+    assert full in facts(memory)
+    # The detectors go on, about another room; what was seen of this one is still fresh for a while.
+    for step in range(1, 15):
+        now = T0 + 1.0 + step * 0.1
+        gone = replace(
+            at(s, "hall", now), markers={"tray": replace(look.markers["tray"], stamp=T0 + 1.0)}
+        )
+        memory = perceive(memory, gone, now, s)
+    assert full in facts(memory)
+
+
 def test_what_is_held_is_not_on_the_table_that_it_hangs_over(care: Planner) -> None:
     s = scene(care)
     word = Detected(lit("(holding tray)"), T0)
