@@ -2,8 +2,8 @@
 
 The translator is a library in this process, so it can't be killed as the search can. What can take
 for ever in it is counting out combinations: each combination of things goes through its queue, its
-`Action.instantiate` and its `translate_strips_operator`, and each of negative goals is a `deepcopy`.
-These four are made to look at the time. Everything else that it does is small beside their results.
+`Action.instantiate`, its `translate_strips_operator` and its `translate_operator`, and each of negative
+goals is a `deepcopy`. These are made to look at the time; all else that it does is small beside them.
 """
 
 from __future__ import annotations
@@ -85,6 +85,7 @@ def watch(parts: Mapping[str, ModuleType]) -> None:
         "Queue": (parts["build_model"], Queue),
         "instantiate": (parts["pddl"].Action, None),
         "translate_strips_operator": (parts["main"], None),
+        "translate_operator": (parts["simplify"].VarValueRenaming, None),
         "deepcopy": (parts["main"], None),
     }
     for name, (owner, new) in replace.items():
