@@ -44,7 +44,7 @@ SCHEMA = "polaris-log/1"
 FORCED: tuple[type[Event], ...] = (Edited, GoalSent, GoalConfirmed, Halted, RunStarted, RunEnded)
 """Events after which the file is forced to the disk, so that even a power cut keeps them."""
 AUDIO = "audio/"
-_UNCHANGED: tuple[object, ...] = (None, [], 0)
+_UNCHANGED = {name: getattr(Stepped(time=-1.0), name) for name in names_of(Stepped)}
 _encode = json.JSONEncoder(ensure_ascii=False, separators=(",", ":")).encode
 
 
@@ -254,7 +254,7 @@ class LogWriter:
         value = {name: getattr(event, name) for name in names_of(type(event))}
         self._turn_over(nanoseconds)
         if isinstance(event, Stepped):  # In most steps nothing has changed.
-            value = {name: x for name, x in value.items() if x not in _UNCHANGED}
+            value = {name: x for name, x in value.items() if x != _UNCHANGED[name]}
         else:
             value["id"], value["causes"] = self._tracer.take(event)
             self.count += 1
