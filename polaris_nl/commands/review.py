@@ -49,7 +49,7 @@ from polaris_nl.logs.spans import spans
 from polaris_nl.model.errors import LogError, UsageError
 from polaris_nl.model.wording import Wording
 from polaris_nl.render.glyphs import glyphs_for, plain
-from polaris_nl.render.timeline import timeline_rows
+from polaris_nl.render.run_timeline import timeline_rows
 
 PAGE = 20
 """Events on a page."""
