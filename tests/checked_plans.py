@@ -15,11 +15,12 @@ from typing import Any
 
 from polaris_nl.automaton.automaton import Automaton
 from polaris_nl.model.domain import Action
+from polaris_nl.model.errors import PlanningError
 from polaris_nl.model.formula import Formula
 from polaris_nl.model.state import State
 from polaris_nl.model.world import World
 from polaris_nl.planning import search as searching
-from polaris_nl.planning.budget import never
+from polaris_nl.planning.budget import never, within
 from polaris_nl.planning.compile import Compiler
 from polaris_nl.planning.pddl_text import domain_text, problem_text
 from polaris_nl.planning.result import BranchingPlan
@@ -101,6 +102,9 @@ class CheckedPlans:
 
     def _least(self, made: Made, goals: list[Formula]) -> int | None:
         text = problem_text(made.world, made.state, goals)
-        task = translate(domain_text(made.world.domain), text)
+        try:
+            task = translate(domain_text(made.world.domain), text, within(BLIND_S, never))
+        except PlanningError:
+            return None
         found = _search(task.sas, OPTIMAL_ANY, BLIND_S, never)
         return len(found.plan) if found.status == "solved" else None

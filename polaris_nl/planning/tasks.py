@@ -34,7 +34,7 @@ from polaris_nl.model.world import World
 from polaris_nl.planning.aiming import Shared
 from polaris_nl.planning.budget import never
 from polaris_nl.planning.costs import Extra
-from polaris_nl.planning.interrupt import Cancelled
+from polaris_nl.planning.grounding import Cancelled
 from polaris_nl.planning.memory import Memory
 from polaris_nl.planning.pddl_text import domain_text, problem_text
 from polaris_nl.planning.translate import (

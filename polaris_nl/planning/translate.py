@@ -17,17 +17,13 @@ from types import ModuleType
 from typing import Any
 
 from polaris_nl.model.errors import PlanningError
+from polaris_nl.planning import grounding
 from polaris_nl.planning.budget import never
-from polaris_nl.planning.interrupt import limited
 
 _LOCK = threading.RLock()
 _PARTS: dict[str, ModuleType] = {}
-LIMIT_S = 10.0
-"""How long one translation may take."""
-_TOO_LONG = (
-    "There are too many ways to combine the things that this may need; ask for less at once, or use a "
-    "smaller world."
-)
+INVARIANTS_S = 3
+"""How long the translator may look for invariants, in seconds; it does without the rest."""
 END = "the end"
 """The name of actions that are no robot's; no PDDL file can have one that is called so."""
 
@@ -82,7 +78,7 @@ def translate(domain: str, problem: str, cancelled: Callable[[], bool] = never) 
     with _LOCK:
         parts = _translator()
         task = _parse(parts, domain, problem)
-        sas = limited(lambda: _grounded(parts, task), LIMIT_S, cancelled, _TOO_LONG)
+        sas = _grounded(parts, task, cancelled)
         if _is_unsolvable(sas):
             return Task("")
         out = io.StringIO()
@@ -117,7 +113,7 @@ def translate_without_goals(
         options = parts["options"].get_options()
         options.filter_unimportant_vars = False
         try:
-            sas = limited(lambda: _grounded(parts, task), LIMIT_S, cancelled, _TOO_LONG)
+            sas = _grounded(parts, task, cancelled)
         finally:
             options.filter_unimportant_vars = True
         if not _is_plain(sas) or sas.metric:
@@ -133,10 +129,13 @@ def translate_without_goals(
         )
 
 
-def _grounded(parts: dict[str, ModuleType], task: Any) -> Any:
+def _grounded(parts: dict[str, ModuleType], task: Any, cancelled: Callable[[], bool]) -> Any:
     try:
-        parts["normalize"].normalize(task)
-        return parts["main"].pddl_to_sas(task)
+        with grounding.limited(grounding.LIMIT_S, cancelled):
+            parts["normalize"].normalize(task)
+            return parts["main"].pddl_to_sas(task)
+    except PlanningError:
+        raise
     except (Exception, SystemExit) as error:
         raise PlanningError(f"The planner can't use this domain: {_reason(error)}.") from error
 
@@ -171,12 +170,15 @@ def _translator() -> dict[str, ModuleType]:
     if not _PARTS:
         package = importlib.import_module("fast_downward.translate")
         options = importlib.import_module("fast_downward.translate.options")
-        options.set_options(["domain.pddl", "problem.pddl"])
+        options.set_options(
+            ["domain.pddl", "problem.pddl", "--invariant-generation-max-time", str(INVARIANTS_S)]
+        )
         for module in pkgutil.walk_packages(package.__path__, "fast_downward.translate."):
             if not module.name.endswith("__main__"):
                 loaded: Any = importlib.import_module(module.name)
                 loaded.print = _quiet
                 _PARTS[module.name.rpartition(".")[2]] = loaded
+        grounding.watch(_PARTS)
     return _PARTS
 
 

@@ -29,8 +29,10 @@ FakeBinary = Callable[[str], None]
 
 @pytest.fixture
 def fresh(care_home: Planner) -> Planner:
-    """A planner that remembers nothing."""
-    return Planner(care_home.world)
+    """A planner that remembers no plan of the tests; it has translated, once and for all."""
+    planner = Planner(care_home.world)
+    planner.segment(planner.world.initial, facts("(robot-at cafeteria)"))
+    return planner
 
 
 @pytest.fixture

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import threading
-import time
-from collections.abc import Callable
 
 import pytest
 
 from polaris_nl.model.errors import PlanningError
 from polaris_nl.model.world_file import world_of_texts
-from polaris_nl.planning import translate
+from polaris_nl.planning import grounding, translate
 from polaris_nl.planning.budget import never
-from polaris_nl.planning.interrupt import Cancelled, limited
+from polaris_nl.planning.pddl_text import domain_text, problem_text
 from polaris_nl.planning.planner import Planner
 from polaris_nl.planning.segments import SegmentResult
 
@@ -46,12 +44,8 @@ TIED = facts("(tied t1 t2)")
 
 @pytest.fixture
 def crowd(monkeypatch: pytest.MonkeyPatch) -> Planner:
-    monkeypatch.setattr(translate, "LIMIT_S", 0.3)
+    monkeypatch.setattr(grounding, "LIMIT_S", 0.3)
     return Planner(world_of_texts(WORLD, CROWD))
-
-
-def watchers() -> list[str]:
-    return [t.name for t in threading.enumerate() if t.name == "planning-watch"]
 
 
 def test_a_translation_without_end_is_given_up_and_said_so(crowd: Planner) -> None:
@@ -59,7 +53,6 @@ def test_a_translation_without_end_is_given_up_and_said_so(crowd: Planner) -> No
     problem = only_problem(plan)
     assert problem.cause == "undecided"
     assert "too many ways" in problem.text
-    assert watchers() == []
 
 
 def test_what_took_too_long_is_not_tried_again_at_once(
@@ -77,7 +70,7 @@ def test_what_took_too_long_is_not_tried_again_at_once(
 def test_a_translation_ends_when_it_is_cancelled(
     crowd: Planner, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(translate, "LIMIT_S", 600.0)
+    monkeypatch.setattr(grounding, "LIMIT_S", 600.0)
     unwanted = threading.Event()
     found: list[SegmentResult] = []
 
@@ -91,7 +84,6 @@ def test_a_translation_ends_when_it_is_cancelled(
     thread.join(30.0)
     assert not thread.is_alive()
     assert found[0].status == "cancelled"
-    assert watchers() == []
 
 
 def test_the_translator_works_as_before_after_it_was_interrupted(
@@ -112,56 +104,14 @@ def texts() -> tuple[str, str]:
     return domain, "(define (problem p) (:domain small) (:init (a)) (:goal (b)))"
 
 
-# The watching itself
-
-
-def forever() -> int:
-    n = 0
-    while True:
-        n += 1
-
-
-def slowly(seconds: float) -> Callable[[], str]:
-    def work() -> str:
-        end = time.monotonic() + seconds
-        while time.monotonic() < end:
-            pass
-        return "done"
-
-    return work
-
-
-def test_work_in_time_is_returned() -> None:
-    assert limited(slowly(0.0), 60.0, never, "too long") == "done"
-    with pytest.raises(ZeroDivisionError):
-        limited(lambda: 1 // 0, 60.0, never, "too long")
-
-
-def test_work_that_takes_too_long_raises() -> None:
-    with pytest.raises(PlanningError, match="too long"):
-        limited(forever, 0.1, never, "too long")
-    with pytest.raises(Cancelled):
-        limited(forever, 60.0, lambda: True, "too long")
-
-
-def test_an_end_beside_the_limit_never_strays_into_what_follows() -> None:
-    # The work ends about when the watcher looks, so that both orders occur.
-    for turn in range(40):
-        outcome = ""
-        try:
-            outcome = limited(slowly(0.04 + turn * 0.0005), 0.05, never, "too long")
-        except PlanningError as error:
-            outcome = str(error)
-        assert sum(range(2000)) == 1999000  # Nothing strange is raised in here.
-        assert outcome in ("done", "too long")
-    assert watchers() == []
-
-
-def test_ending_leaves_other_threads_alone() -> None:
-    done: list[str] = []
-    other = threading.Thread(target=lambda: done.append(slowly(0.3)()))
-    other.start()
-    with pytest.raises(PlanningError):
-        limited(forever, 0.1, never, "too long")
-    other.join()
-    assert done == ["done"]
+def test_goals_that_rule_much_out_at_once_end_in_time(
+    care_home: Planner, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # Each is one value of a variable less, and the translator counts all combinations of the others.
+    monkeypatch.setattr(grounding, "LIMIT_S", 0.5)
+    world = care_home.world
+    surfaces = [e.name for e in world.of_type("surface")]
+    things = [e.name for e in world.of_type("object")]
+    goals = facts(" ".join(f"(not (at {o} {s}))" for o in things for s in surfaces))
+    with pytest.raises(PlanningError, match="too many ways"):
+        translate.translate(domain_text(world.domain), problem_text(world, world.initial, goals))
