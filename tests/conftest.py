@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import os
 import threading
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, settings
+
+from tests.checked_plans import CheckedPlans
 
 settings.register_profile(
     "repeatable",
@@ -20,6 +23,9 @@ settings.register_profile(
 )
 settings.load_profile("repeatable")
 
+PLANS = CheckedPlans()
+ENDING_S = 1.0
+"""How long what is ending already may take to be gone."""
 _MODEL_CACHE = Path.home() / ".cache" / "vosk" / "vosk-model-small-en-us-0.15"
 
 
@@ -45,13 +51,36 @@ def _own_home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     patch.undo()
 
 
+@pytest.fixture(scope="session", autouse=True)
+def _watched_plans() -> Iterator[None]:
+    """Plans are caught from the first test on."""
+    with pytest.MonkeyPatch.context() as patch:
+        PLANS.watch(patch)
+        yield
+
+
+@pytest.fixture(autouse=True)
+def _right_plans() -> Iterator[None]:
+    """Every plan that a test makes is valid, and shortest where it is said to be."""
+    yield
+    assert PLANS.faults() == []
+
+
 @pytest.fixture(autouse=True)
 def _no_leftovers() -> Iterator[None]:
     """A test ends the processes it started, and the planning threads."""
     yield
-    assert not _children(), "a test left a process running"
-    left = [t.name for t in threading.enumerate() if t.name == "planning"]
-    assert not left, "a test left a session open"
+    left = _left()
+    deadline = time.monotonic() + ENDING_S
+    while left and time.monotonic() < deadline:  # What is just ending is no leftover.
+        time.sleep(0.01)
+        left = _left()
+    assert not left, f"a test left these behind: {left}"
+
+
+def _left() -> list[str]:
+    threads = [t.name for t in threading.enumerate() if t.name.startswith("planning")]
+    return [*(f"process {pid}" for pid in _children()), *(f"thread {name}" for name in threads)]
 
 
 def _children() -> list[int]:

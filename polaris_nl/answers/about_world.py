@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from polaris_nl.language.interpretation import Query
 from polaris_nl.model.evaluate import holds
 from polaris_nl.model.formula import Literal
-from polaris_nl.model.text import listed, sentence
+from polaris_nl.model.text import in_words, listed, names_several, plural_of, sentence
 from polaris_nl.model.wording import Wording
 from polaris_nl.model.world import Entity, World
 
@@ -23,9 +23,6 @@ _KINDS = {
     "object": ("thing to carry", "things to carry"), "person": ("person", "people"),
     "message": ("message", "messages"),
 }  # fmt: skip
-_NUMBERS = (
-    "no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve"
-)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -185,7 +182,7 @@ class AboutWorld:
         facts = self._together(true)
         yes = "yes, " if query.kind == "any" else ""
         if query.counted:
-            number = _number(len(true))
+            number = in_words(len(true))
             return sentence(f"{number}: {listed(facts)}") if true else self._none(query)
         return sentence(f"{yes}{listed(facts)}") if true else self._none(query)
 
@@ -235,7 +232,7 @@ class AboutWorld:
             return sentence(f"{'one' if query.counted else 'yes'}, {self.wording.entity(names[0])}")
         noun = query.noun or "things"
         noun = noun if names_several(noun) else plural_of(noun)
-        return sentence(f"there are {_number(len(names))} {noun}: {self._named(names)}")
+        return sentence(f"there are {in_words(len(names))} {noun}: {self._named(names)}")
 
     def _meaning(self, name: str) -> str:
         entity, said = self.world.entities[name], self.wording.entity(name)
@@ -275,7 +272,7 @@ class AboutWorld:
         where = self._at(query.entity)
         if not there:
             return sentence(f"none, as far as I know: nothing of that is {where}")
-        number = f"{_number(len(there))}: " if query.counted else ""
+        number = f"{in_words(len(there))}: " if query.counted else ""
         return sentence(f"{number}{self._named(there)} {_are(self.world, there)} {where}")
 
     def _owner(self, name: str) -> str:
@@ -294,9 +291,9 @@ class AboutWorld:
             if names:
                 noun = one if len(names) == 1 else several
                 parts.append(
-                    f"{_number(len(names))} {noun}, such as {self._named(names[:3])}"
+                    f"{in_words(len(names))} {noun}, such as {self._named(names[:3])}"
                     if len(names) > 3
-                    else f"{_number(len(names))} {noun}: {self._named(names)}"
+                    else f"{in_words(len(names))} {noun}: {self._named(names)}"
                 )
         return sentence(f"I know {'; '.join(parts)}")
 
@@ -323,7 +320,7 @@ class AboutWorld:
         if more <= 1:
             return listed([self.wording.entity(n) for n in names])
         said = [self.wording.entity(n) for n in names[:MOST_NAMED]]
-        return listed([*said, f"{_number(more)} more"])
+        return listed([*said, f"{in_words(more)} more"])
 
     def _in_order(self, names: Iterable[str]) -> list[str]:
         wanted = set(names)
@@ -345,22 +342,6 @@ def _lower(text: str) -> str:
 def _after(text: str, thing: str, pronoun: str) -> str:
     """A sentence about a thing with a pronoun for it at its beginning."""
     return pronoun + text[len(thing) :] if text.lower().startswith(thing.lower()) else text
-
-
-def names_several(noun: str) -> bool:
-    """Whether a noun is a plural already."""
-    return noun == "people" or (noun.endswith("s") and not noun.endswith("ss"))
-
-
-def plural_of(noun: str) -> str:
-    """`dish` -> `dishes`, `box` -> `boxes`, `cup` -> `cups`."""
-    if noun.endswith(("s", "x", "ch", "sh")):
-        return noun + "es"
-    return noun[:-1] + "ies" if noun.endswith("y") and noun[-2:-1] not in "aeiou" else noun + "s"
-
-
-def _number(count: int) -> str:
-    return _NUMBERS[count] if count < len(_NUMBERS) else str(count)
 
 
 def _is(entity: Entity) -> str:

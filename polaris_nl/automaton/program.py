@@ -11,12 +11,12 @@ from typing import Any
 from polaris_nl.automaton.automaton import START, Automaton, Checkpoint, Transition
 from polaris_nl.model.domain import Action
 from polaris_nl.model.errors import FileError, FormatError, ProgramError
+from polaris_nl.model.files import read_small_text
 from polaris_nl.model.formula import Literal, parse_formula
 from polaris_nl.model.schema import check_schema
 from polaris_nl.model.sexpr import Group, Word, read_one
 
 SCHEMA = "polaris-program/1"
-MAX_BYTES = 16_000_000
 MIGRATIONS: Mapping[int, Callable[[dict[str, Any]], dict[str, Any]]] = {}
 """For each older version n, the function that makes version n + 1 of a program's JSON value."""
 
@@ -169,15 +169,7 @@ def read_program(path: Path) -> Program:
         FileError: it can't be read.
         ProgramError: it is no program file; what is wrong is named.
     """
-    try:
-        if path.stat().st_size > MAX_BYTES:
-            raise ProgramError(
-                f"A program file of more than {MAX_BYTES // 10**6} MB is refused.", path
-            )
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = "it is not UTF-8 text" if isinstance(error, UnicodeDecodeError) else error.strerror
-        raise FileError(f"Can't read the program file {path}: {reason}. Check the path.") from error
+    text = read_small_text(path, "program file", ProgramError)
     try:
         return program_of(json.loads(text))
     except json.JSONDecodeError as error:

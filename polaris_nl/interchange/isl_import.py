@@ -8,10 +8,10 @@ from pathlib import Path
 from polaris_nl.automaton.automaton import START, Automaton, Checkpoint, Transition
 from polaris_nl.interchange.isl_syntax import INIT, Isl, Label, Step, parse_isl
 from polaris_nl.model.check import action_faults, literal_faults
-from polaris_nl.model.errors import FileError, FormatError, ProgramError
+from polaris_nl.model.errors import FormatError, ProgramError
+from polaris_nl.model.files import read_small_text
 from polaris_nl.model.world import World
 
-MAX_BYTES = 8_000_000
 _NOT_KEPT = {
     "maintenance_goals": "goals that are to hold all the time can't be asked for yet",
     "uncertain_item_locations": "every thing's place is taken to be known",
@@ -25,15 +25,7 @@ def read_isl(path: Path) -> Isl:
         FileError: it can't be read.
         ProgramError: it is no ISL; what is wrong is named with its line.
     """
-    try:
-        if path.stat().st_size > MAX_BYTES:
-            raise ProgramError(
-                f"An ISL file of more than {MAX_BYTES // 10**6} MB is refused.", path
-            )
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = "it is not UTF-8 text" if isinstance(error, UnicodeDecodeError) else error.strerror
-        raise FileError(f"Can't read the ISL file {path}: {reason}. Check the path.") from error
+    text = read_small_text(path, "ISL file", ProgramError)
     try:
         return parse_isl(text)
     except FormatError as error:

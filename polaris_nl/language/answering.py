@@ -4,24 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from polaris_nl.automaton.automaton import Automaton
 from polaris_nl.language.commands import Commands
 from polaris_nl.language.corrections import Corrections
 from polaris_nl.language.dialogue import Dialogue, Pending
 from polaris_nl.language.interpretation import Interpretation
+from polaris_nl.language.protocol import Language
 from polaris_nl.language.references import References
 from polaris_nl.language.rereading import with_phrase
 from polaris_nl.language.scope import Unclear
 from polaris_nl.language.tokens import words
 
-if TYPE_CHECKING:
-    from polaris_nl.language.understanding import Understanding
-
 
 class Answering:
-    """Reads answers for one `Understanding`.
+    """Reads answers for the language side of one world.
 
     Args:
         language: its other parts.
@@ -32,7 +29,7 @@ class Answering:
 
     def __init__(
         self,
-        language: Understanding,
+        language: Language,
         commands: Commands,
         corrections: Corrections,
         references: References,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from polaris_nl.automaton.automaton import START, Automaton, Checkpoint, Transition
 from polaris_nl.automaton.edits import (
@@ -20,6 +19,7 @@ from polaris_nl.language.dialogue import Dialogue, Latest
 from polaris_nl.language.generate import goals_in_words, steps_in_words
 from polaris_nl.language.interpretation import Interpretation
 from polaris_nl.language.patterns import Match, Patterns
+from polaris_nl.language.protocol import Language
 from polaris_nl.language.reading import steps_of
 from polaris_nl.language.references import meant
 from polaris_nl.language.reshaping import (
@@ -48,9 +48,6 @@ from polaris_nl.model.errors import EditError
 from polaris_nl.model.formula import Goal, Literal
 from polaris_nl.model.text import listed, sentence
 
-if TYPE_CHECKING:
-    from polaris_nl.language.understanding import Understanding
-
 MOST_NAMED = 8
 """Steps that a refusal names."""
 _REFUSABLE = (
@@ -72,9 +69,9 @@ def steps_there(program: Automaton) -> str:
 
 
 class Changes:
-    """Reads edits for one `Understanding`."""
+    """Reads edits for the language side of one world."""
 
-    def __init__(self, language: Understanding) -> None:
+    def __init__(self, language: Language) -> None:
         self._language = language
 
     def edited(

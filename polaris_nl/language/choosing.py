@@ -3,26 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 from polaris_nl.automaton.automaton import Automaton
 from polaris_nl.automaton.edits import Edit
 from polaris_nl.language.dialogue import Dialogue
 from polaris_nl.language.exchange import exchanged, kinds_in, used_in
 from polaris_nl.language.mention import Mention
+from polaris_nl.language.protocol import Language
 from polaris_nl.language.scope import Misfit, Unclear
 from polaris_nl.model.formula import Literal
-
-if TYPE_CHECKING:
-    from polaris_nl.language.understanding import Understanding
 
 _PERSONS = ("he", "she", "him", "her")
 
 
 class Choosing:
-    """Finds what is meant instead of what, for one `Understanding`."""
+    """Finds what is meant instead of what, for the language side of one world."""
 
-    def __init__(self, language: Understanding) -> None:
+    def __init__(self, language: Language) -> None:
         self._language = language
 
     def entities(

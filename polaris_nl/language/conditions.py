@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
+from polaris_nl.language.protocol import Language
 from polaris_nl.language.scope import Misfit, Scope, Unclear
 from polaris_nl.language.segment import Cut
 from polaris_nl.model.formula import Literal
 
-if TYPE_CHECKING:
-    from polaris_nl.language.understanding import Understanding
-
 
 def condition_in(
-    language: Understanding,
+    language: Language,
     tokens: Sequence[str],
     span: object,
     scope: Scope,
@@ -39,7 +36,7 @@ def condition_in(
     return ()
 
 
-def stated(language: Understanding, cuts: Sequence[Cut], scope: Scope) -> tuple[Literal, ...]:
+def stated(language: Language, cuts: Sequence[Cut], scope: Scope) -> tuple[Literal, ...]:
     """The literals of a statement that was cut up, or none.
 
     Raises:

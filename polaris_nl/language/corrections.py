@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 from polaris_nl.automaton.automaton import START, Automaton
 from polaris_nl.automaton.edits import (
@@ -31,6 +30,7 @@ from polaris_nl.language.generate import goals_in_words, steps_in_words
 from polaris_nl.language.interpretation import Interpretation
 from polaris_nl.language.mention import Mention
 from polaris_nl.language.patterns import Match, Patterns, strip
+from polaris_nl.language.protocol import Language
 from polaris_nl.language.references import References, meant
 from polaris_nl.language.rereading import Rereading
 from polaris_nl.language.scope import Misfit, Unclear
@@ -39,9 +39,6 @@ from polaris_nl.language.tokens import BREAK, COMMA
 from polaris_nl.model.errors import EditError
 from polaris_nl.model.formula import Goal, Literal
 from polaris_nl.model.text import listed, sentence
-
-if TYPE_CHECKING:
-    from polaris_nl.language.understanding import Understanding
 
 _LEADS = {"correct-lead": 2, "correct-aside": 1, "correct-tail": 1, "correct-noise": 0}
 WHAT_INSTEAD = "I don't see what should be changed; say what you meant, or undo."
@@ -71,9 +68,9 @@ class Core:
 
 
 class Corrections:
-    """Reads corrections for one `Understanding`."""
+    """Reads corrections for the language side of one world."""
 
-    def __init__(self, language: Understanding, changes: Changes, references: References) -> None:
+    def __init__(self, language: Language, changes: Changes, references: References) -> None:
         self._language = language
         self._changes = changes
         self._references = references

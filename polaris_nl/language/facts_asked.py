@@ -4,19 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from polaris_nl.language.asking import AUXILIARIES, DOING
 from polaris_nl.language.clauses import Clause
 from polaris_nl.language.conditions import stated
 from polaris_nl.language.interpretation import Query, QueryKind
 from polaris_nl.language.mention import Candidate, Mention
+from polaris_nl.language.protocol import Language
 from polaris_nl.language.scope import Misfit, Scope, Unclear
 from polaris_nl.language.segment import Cut
 from polaris_nl.model.formula import Literal
-
-if TYPE_CHECKING:
-    from polaris_nl.language.understanding import Understanding
 
 _VAGUE = {
     "anyone": "someone", "anybody": "someone", "someone": "someone", "somebody": "someone", "people": "people",
@@ -37,7 +34,7 @@ _BEING_THERE = (
 class FactsAsked:
     """Reads what is asked about the world, in one dialogue."""
 
-    def __init__(self, language: Understanding, scope: Scope) -> None:
+    def __init__(self, language: Language, scope: Scope) -> None:
         self._language = language
         self._scope = scope
         self._known_cuts: dict[tuple[str, ...], list[Cut]] = {}

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from polaris_nl.language.grammar import Grammar
 from polaris_nl.model.domain import KIND
 from polaris_nl.model.formula import And, Equal, Formula, Imply, Literal, Not, Quantified, Variable
-from polaris_nl.model.text import listed
+from polaris_nl.model.text import in_words, listed, names_several, plural_of, with_article
 from polaris_nl.model.world import Entity, World
 
 Namer = Callable[[str], str]
@@ -77,23 +77,43 @@ class NounPhrases:
             namer: names for what stands in it.
             moved: the things are to be brought from where they are said to be.
         """
-        types = goal.variable.types
-        noun, place, adjectives, left_out = types[0] if types else OBJECT, "", [], []
-        for part in goal.conditions:
-            if isinstance(part, Not) and isinstance(part.part, Equal):
-                left_out.append(namer(part.part.right))
-            elif isinstance(part, Literal) and part.predicate == KIND:
-                noun = part.args[1].replace("-", " ")
-            elif isinstance(part, Literal) and len(part.args) == 2:
-                link = "from" if moved else _LINKS.get(part.predicate, part.predicate)
-                place = f" {link} {namer(part.args[1])}"
-            elif isinstance(part, Literal):
-                adjectives.append(self.adjective(part) or str(part))
+        left_out = [
+            namer(part.part.right)
+            for part in goal.conditions
+            if isinstance(part, Not) and isinstance(part.part, Equal)
+        ]
+        noun, adjectives, place = self._described(goal.variable, goal.conditions, namer, moved)
         everything = noun == OBJECT and not adjectives
         described = " ".join([*adjectives, noun])
         head = "everything" if everything else f"{_quantifier(noun)} {described}"
         but = f" but {listed(left_out)}" if left_out else ""
         return f"{head}{place}{but}"
+
+    def some(self, goal: SomeOf, namer: Namer, moved: bool = False) -> str:
+        """Things of which there are to be so many: "a clean bowl from the shelf", "two cups"."""
+        noun, adjectives, place = self._described(goal.variable, goal.conditions, namer, moved)
+        noun = "thing" if noun == OBJECT else noun
+        if goal.count == 1:
+            return f"{with_article(' '.join([*adjectives, noun]))}{place}"
+        noun = noun if names_several(noun) else plural_of(noun)
+        return f"{' '.join([in_words(goal.count), *adjectives, noun])}{place}"
+
+    def _described(
+        self, variable: Variable, conditions: Sequence[Formula], namer: Namer, moved: bool
+    ) -> tuple[str, list[str], str]:
+        """A noun, the adjectives before it and the place after it."""
+        noun, place, adjectives = variable.types[0] if variable.types else OBJECT, "", []
+        for part in conditions:
+            if not isinstance(part, Literal):
+                continue
+            if part.predicate == KIND:
+                noun = part.args[1].replace("-", " ")
+            elif len(part.args) == 2:
+                link = "from" if moved else _LINKS.get(part.predicate, part.predicate)
+                place = f" {link} {namer(part.args[1])}"
+            else:
+                adjectives.append(self.adjective(part) or str(part))
+        return noun, adjectives, place
 
     def adjective(self, literal: Literal) -> str:
         """A word before a noun for a predicate, or ""."""
@@ -137,6 +157,59 @@ def all_of(goal: Formula) -> AllOf | None:
     if not plain or not isinstance(body.conclusion, Literal):
         return None
     return AllOf(goal.variables[0], parts, body.conclusion)
+
+
+@dataclass(frozen=True, slots=True)
+class SomeOf:
+    """A goal for so many things of which some conditions hold, in the one form that can be said.
+
+    Attributes:
+        variable: stands for one of the things.
+        count: how many there are to be, all different.
+        conditions: which things; literals about the variable.
+        said: what is to hold of each.
+    """
+
+    variable: Variable
+    count: int
+    conditions: tuple[Literal, ...]
+    said: Literal
+
+
+def some_of(goal: Formula) -> SomeOf | None:
+    """A goal for some things in parts; None for one that has another form, and for other goals.
+
+    What is to hold of each is what brings it somewhere, or else what is named last.
+    """
+    if not isinstance(goal, Quantified) or goal.quantifier != "exists":
+        return None
+    names = [v.name for v in goal.variables]
+    of_each: dict[str, list[Literal]] = {name: [] for name in names}
+    for part in _parts(goal.body):
+        if isinstance(part, Not) and isinstance(part.part, Equal):
+            if not {part.part.left, part.part.right} <= set(names):
+                return None
+            continue
+        about = [n for n in names if isinstance(part, Literal) and n in part.args]
+        if len(about) != 1 or not isinstance(part, Literal):
+            return None
+        of_each[about[0]].append(part)
+    first, *others = (
+        {x.bind({name: names[0]}): None for x in literals} for name, literals in of_each.items()
+    )
+    sayable = [x for x in first if x.predicate != KIND]
+    if not sayable or any(set(other) != set(first) for other in others):
+        return None
+    moving = [x for x in sayable if x.positive and x.predicate in PLACES]
+    said = (moving or sayable)[-1]
+    rest = tuple(x for x in first if x != said)
+    if any(len(x.args) > 2 for x in rest) or sum(_is_place(x) for x in rest) > 1:
+        return None
+    return SomeOf(goal.variables[0], len(names), rest, said)
+
+
+def _is_place(literal: Literal) -> bool:
+    return len(literal.args) == 2 and literal.predicate != KIND
 
 
 def _parts(condition: Formula) -> Iterator[Formula]:

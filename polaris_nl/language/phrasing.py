@@ -19,7 +19,9 @@ from polaris_nl.language.noun_phrases import (
     AllOf,
     Namer,
     NounPhrases,
+    SomeOf,
     all_of,
+    some_of,
 )
 from polaris_nl.language.predicate_phrases import AGENT, SAID
 from polaris_nl.model.formula import (
@@ -56,10 +58,12 @@ class Group:
     Attributes:
         literals: of one predicate and sign, all arguments but one the same.
         at: which argument differs.
+        many: what differs stands for several things.
     """
 
     literals: tuple[Literal, ...]
     at: int = 0
+    many: bool = False
 
     @property
     def first(self) -> Literal:
@@ -200,7 +204,7 @@ class Phrasing:
         text = self._text(first, kind) or self._text(first, "fact")
         if not text:
             return " ".join([first.predicate.replace("-", " "), *map(namer, first.args)])
-        if len(things) > 1 and group.at == 0:
+        if (len(things) > 1 or group.many) and group.at == 0:
             text = _VERB.sub(lambda m: f"{m[1]} {_PLURALS[m[2]]}", text)
         parameters = self._parameters(first)
         nobody = self._nobody(group, kind)
@@ -225,24 +229,27 @@ class Phrasing:
     def _goal(self, goal: Formula, namer: Namer) -> str:
         if isinstance(goal, And):
             return listed(self.goals(goal.parts, namer))
-        every = all_of(goal)
-        if every is None:
+        quantified = all_of(goal) or some_of(goal)
+        if quantified is None:
             return f"make sure that {self.fact(goal, namer)}"
-        moved = every.said.positive and every.said.predicate in PLACES
-        names = self._quantifier(every, namer, moved)
-        return self._imperative(Group((every.said,)), names)
+        moved = quantified.said.positive and quantified.said.predicate in PLACES
+        names = self._quantifier(quantified, namer, moved)
+        return self._imperative(_group(quantified), names)
 
     def _all(self, formula: Quantified, kind: str, namer: Namer) -> str:
-        every = all_of(formula)
-        if every is not None:
-            return self._clause(Group((every.said,)), kind, self._quantifier(every, namer))
+        quantified = all_of(formula) or some_of(formula)
+        if quantified is not None:
+            return self._clause(_group(quantified), kind, self._quantifier(quantified, namer))
         words = {"forall": "every", "exists": "some"}[formula.quantifier]
         names = {v.name: f"{words} {(v.types or ('thing',))[0]}" for v in formula.variables}
         return self.fact(formula.body, lambda name: names.get(name) or namer(name))
 
-    def _quantifier(self, every: AllOf, namer: Namer, moved: bool = False) -> Namer:
-        said = self._nouns.every(every, namer, moved)
-        return lambda name: said if name == every.variable.name else namer(name)
+    def _quantifier(self, goal: AllOf | SomeOf, namer: Namer, moved: bool = False) -> Namer:
+        if isinstance(goal, AllOf):
+            said = self._nouns.every(goal, namer, moved)
+        else:
+            said = self._nouns.some(goal, namer, moved)
+        return lambda name: said if name == goal.variable.name else namer(name)
 
     def _adjectives(self, goals: Sequence[Formula]) -> Iterator[tuple[str, Literal]]:
         """Goals that an adjective in another one says: "full" in "bring the full tray to the table".
@@ -281,6 +288,11 @@ class Phrasing:
         robots = [e for e in self._world.entities.values() if e.type == ROBOT]
         alone = entity in robots and len(robots) == 1
         return "" if alone else f"have {self._nouns.entity(name)}"
+
+
+def _group(goal: AllOf | SomeOf) -> Group:
+    at = goal.said.args.index(goal.variable.name) if goal.variable.name in goal.said.args else 0
+    return Group((goal.said,), at, isinstance(goal, SomeOf) and goal.count > 1)
 
 
 def joined(clauses: Sequence[str]) -> str:

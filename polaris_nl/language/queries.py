@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, cast
+from typing import cast
 
 from polaris_nl.automaton.automaton import START, Automaton
 from polaris_nl.automaton.edits import AddCheckpoint
@@ -16,14 +16,12 @@ from polaris_nl.language.foils import FOIL_KINDS, FOILS, foil, never
 from polaris_nl.language.interpretation import Interpretation, Query, QueryKind
 from polaris_nl.language.mention import Mention
 from polaris_nl.language.patterns import Match, Patterns
+from polaris_nl.language.protocol import Language
 from polaris_nl.language.scope import Misfit, Unclear
 from polaris_nl.language.tokens import BREAK, COMMA
 from polaris_nl.model.evaluate import holds
 from polaris_nl.model.formula import Literal, literals_in
 from polaris_nl.model.world import World
-
-if TYPE_CHECKING:
-    from polaris_nl.language.understanding import Understanding
 
 LONGEST = 60
 """Words beyond which an utterance is not taken for a question."""
@@ -34,7 +32,7 @@ _BARE = ("where-robot", "first", "last", "length", "world", "people", "problems"
 
 
 def answer_to(
-    language: Understanding,
+    language: Language,
     utterance: str,
     asking: Asking,
     tokens: Sequence[str],
@@ -72,7 +70,7 @@ def answer_to(
 
 
 def contrast_asked(
-    language: Understanding,
+    language: Language,
     utterance: str,
     asking: Asking,
     tokens: Sequence[str],
@@ -92,7 +90,7 @@ def contrast_asked(
 
 
 def _answer(
-    utterance: str, query: Query, language: Understanding, program: Automaton, dialogue: Dialogue
+    utterance: str, query: Query, language: Language, program: Automaton, dialogue: Dialogue
 ) -> tuple[Interpretation, Dialogue]:
     asked = query.checkpoint
     if query.kind == "plan":
@@ -114,7 +112,7 @@ def _answer(
 class _Reader:
     """Reads one question about a program."""
 
-    def __init__(self, language: Understanding, program: Automaton, dialogue: Dialogue) -> None:
+    def __init__(self, language: Language, program: Automaton, dialogue: Dialogue) -> None:
         self._language = language
         self._program = program
         self._dialogue = dialogue

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from polaris_nl.automaton.automaton import START, Automaton
 from polaris_nl.automaton.edits import (
@@ -19,12 +18,10 @@ from polaris_nl.language.changes import NOTHING_CHANGES, MeantThen
 from polaris_nl.language.dialogue import Dialogue
 from polaris_nl.language.interpretation import Interpretation
 from polaris_nl.language.patterns import Match
+from polaris_nl.language.protocol import Language
 from polaris_nl.language.references import References
 from polaris_nl.language.scope import Unclear
 from polaris_nl.model.errors import EditError
-
-if TYPE_CHECKING:
-    from polaris_nl.language.understanding import Understanding
 
 _ARTICLES = ("a", "an", "the", "one", "some")
 
@@ -84,9 +81,9 @@ def with_phrase(tokens: Sequence[str], old: Sequence[str], new: Sequence[str]) -
 
 
 class Rereading:
-    """Reads the latest utterance again with something else in it, for one `Understanding`."""
+    """Reads the latest utterance again with something else in it, for the language side of one world."""
 
-    def __init__(self, language: Understanding, references: References) -> None:
+    def __init__(self, language: Language, references: References) -> None:
         self._language = language
         self._references = references
         self._numbers = language.grammar.common.numbers
@@ -169,7 +166,7 @@ def _noun(tokens: Sequence[str], word: str) -> str:
     return " ".join(tokens[at : at + 2])
 
 
-def _all_new(words: Sequence[str], language: Understanding) -> bool:
+def _all_new(words: Sequence[str], language: Language) -> bool:
     """Whether words mean nothing yet, so that they can be a name."""
     if any(mention.end == len(words) for mention in language.mentions(words)[0]):
         return False

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 from polaris_nl.automaton.automaton import START, Automaton
 from polaris_nl.language.dialogue import Dialogue, Pending
 from polaris_nl.language.generate import steps_in_words
 from polaris_nl.language.interpretation import Interpretation, Question, Reading
+from polaris_nl.language.protocol import Language
 from polaris_nl.language.reading import steps_of
 from polaris_nl.language.refusals import Refusals
 from polaris_nl.language.repair import Repairs
@@ -17,9 +17,6 @@ from polaris_nl.language.scope import Misfit, Scope, Unclear
 from polaris_nl.language.segment import Cut
 from polaris_nl.language.structure import Builder, Step
 from polaris_nl.language.tokens import phrase
-
-if TYPE_CHECKING:
-    from polaris_nl.language.understanding import Understanding
 
 AS_IT_IS = "It is like that already; nothing changes."
 MOST_REPAIRED = 60
@@ -40,7 +37,7 @@ class _Tried:
 
 
 class Statements:
-    """Reads steps for one `Understanding`.
+    """Reads steps for the language side of one world.
 
     Args:
         language: its other parts.
@@ -51,7 +48,7 @@ class Statements:
 
     def __init__(
         self,
-        language: Understanding,
+        language: Language,
         repairs: Repairs,
         refusals: Refusals,
         known: Container[str],

@@ -19,7 +19,8 @@ from pathlib import Path
 
 from polaris_nl.model.agents import narrowed
 from polaris_nl.model.domain import Domain, Operator, Predicate
-from polaris_nl.model.errors import DomainError, FileError, FormatError, did_you_mean
+from polaris_nl.model.errors import DomainError, FormatError, did_you_mean
+from polaris_nl.model.files import read_small_text
 from polaris_nl.model.formula import And, Formula, Literal, Variable, formula_of, typed_list
 from polaris_nl.model.pddl_comments import (
     Comment,
@@ -32,8 +33,6 @@ from polaris_nl.model.pddl_comments import (
 )
 from polaris_nl.model.sexpr import Group, Node, Word, read_all
 
-MAX_BYTES = 4_000_000
-
 
 def read_domain(path: Path) -> Domain:
     """Reads a domain file.
@@ -42,15 +41,7 @@ def read_domain(path: Path) -> Domain:
         FileError: it can't be read.
         DomainError: it is no PDDL domain; the line is named.
     """
-    try:
-        if path.stat().st_size > MAX_BYTES:
-            raise DomainError(
-                f"A domain file of more than {MAX_BYTES // 10**6} MB is refused.", path
-            )
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = "it is not UTF-8 text" if isinstance(error, UnicodeDecodeError) else error.strerror
-        raise FileError(f"Can't read the domain file {path}: {reason}. Check the path.") from error
+    text = read_small_text(path, "domain file", DomainError)
     try:
         return parse_domain(text, path)
     except DomainError:

@@ -13,12 +13,12 @@ from polaris_nl.model.check import formula_faults
 from polaris_nl.model.data import shipped_domains
 from polaris_nl.model.domain import Domain, conjuncts
 from polaris_nl.model.errors import FileError, FormatError, WorldError, did_you_mean
+from polaris_nl.model.files import read_small_text
 from polaris_nl.model.formula import Formula, Literal, formula_of, typed_list
 from polaris_nl.model.pddl import read_domain
 from polaris_nl.model.sexpr import Group, Node, Word, read_all
 from polaris_nl.model.world import Entity, Objective, Scenario, World
 
-MAX_BYTES = 8_000_000
 _PARTS = (":domain", ":objects", ":init", ":goal", ":requirements", ":metric")
 
 
@@ -40,15 +40,7 @@ def read_problem(path: Path) -> World:
         WorldError: it is no PDDL problem, or doesn't fit its domain; the line is named.
         DomainError: its domain can't be understood.
     """
-    try:
-        if path.stat().st_size > MAX_BYTES:
-            raise WorldError(
-                f"A problem file of more than {MAX_BYTES // 10**6} MB is refused.", path
-            )
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = "it is not UTF-8 text" if isinstance(error, UnicodeDecodeError) else error.strerror
-        raise FileError(f"Can't read the problem file {path}: {reason}. Check the path.") from error
+    text = read_small_text(path, "problem file", WorldError)
     try:
         name = _word(_part(_root(text), ":domain"))
         return parse_problem(text, _domain(name, path), path)

@@ -8,9 +8,8 @@ from typing import Any
 
 import yaml
 
-from polaris_nl.model.errors import FileError, FormatError, did_you_mean
-
-MAX_BYTES = 8_000_000
+from polaris_nl.model.errors import FormatError, did_you_mean
+from polaris_nl.model.files import read_small_text
 
 
 class Lined:
@@ -92,13 +91,7 @@ def read_yaml(path: Path) -> tuple[Lined, str]:
         FileError: it can't be read.
         FormatError: it is no YAML, names a field twice or uses aliases; the line is named.
     """
-    try:
-        if path.stat().st_size > MAX_BYTES:
-            raise FormatError(f"A file of more than {MAX_BYTES // 10**6} MB is refused.", path)
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = "it is not UTF-8 text" if isinstance(error, UnicodeDecodeError) else error.strerror
-        raise FileError(f"Can't read {path}: {reason}. Check the path.") from error
+    text = read_small_text(path, "file", FormatError)
     return parse_yaml(text), text
 
 

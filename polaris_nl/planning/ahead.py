@@ -19,6 +19,7 @@ from polaris_nl.model.errors import PlanningError
 from polaris_nl.model.formula import And, Formula, Literal, When
 from polaris_nl.model.state import ANY, Mutexes, State
 from polaris_nl.model.world import World
+from polaris_nl.planning.budget import within
 from polaris_nl.planning.memory import Memory
 from polaris_nl.planning.pddl_text import domain_text, problem_text
 from polaris_nl.planning.projection import Projection
@@ -112,7 +113,7 @@ class Ahead:
         goals = (*stages[-1].goals, Literal(f"{_STAGE}{len(stages) - 1}"))
         text = problem_text(replace(world, domain=domain), start.change((), (first,)), goals)
         try:
-            task = translate(domain_text(domain, written=True), text)
+            task = translate(domain_text(domain, written=True), text, within(budget_s, cancelled))
             if not task.sas:
                 return None
             engine = OPTIMAL if task.plain else OPTIMAL_ANY

@@ -6,6 +6,11 @@ import time
 from collections.abc import Callable
 
 
+def never() -> bool:
+    """The answer to "is this cancelled?" where nothing cancels."""
+    return False
+
+
 def within(seconds: float, cancelled: Callable[[], bool]) -> Callable[[], bool]:
     """Asked now and then, it is True once some time is over, or the work is cancelled."""
     deadline = time.monotonic() + seconds

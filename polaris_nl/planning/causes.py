@@ -11,7 +11,7 @@ from polaris_nl.automaton.automaton import Transition
 from polaris_nl.model.domain import Operator, effect_literals
 from polaris_nl.model.formula import Literal
 from polaris_nl.model.state import ANY, Mutexes, MutexGroup, State
-from polaris_nl.model.text import listed
+from polaris_nl.model.text import in_words, listed
 from polaris_nl.model.wording import Wording
 from polaris_nl.model.world import World
 from polaris_nl.planning.place import Place
@@ -26,7 +26,6 @@ LOOK_BACK = 8
 """How many earlier points are looked at."""
 MEMORY = 200
 """What goals lack that is remembered, since a problem is met again with every edit elsewhere."""
-NUMBERS = ("no", "one", "two", "three", "four", "five", "six")
 
 Blame = Transition | Segment
 
@@ -86,14 +85,10 @@ class Causes:
         scarce = self._scarce(core)
         if scarce:
             return f", as {scarce}"
-        some = NUMBERS[len(core) - 1] if len(core) <= len(NUMBERS) else "all but one"
         if len(core) == 2:
             return ": I can do either, but not both"
-        return (
-            f": I can do any {some} of them, but not all {NUMBERS[len(core)]}"
-            if len(core) < len(NUMBERS)
-            else ""
-        )
+        some, every = in_words(len(core) - 1), in_words(len(core))
+        return f": I can do any {some} of them, but not all {every}"
 
     def used_up(
         self, place: Place, core: Sequence[Literal], cancelled: Callable[[], bool]
@@ -150,9 +145,9 @@ class Causes:
         for kind in world.domain.types:
             count = sum(1 for _ in world.of_type(kind))
             operators = [op for goal in core for op in world.domain.achievers(goal)]
-            fewer = 0 < count < len(core) and count < len(NUMBERS)
+            fewer = 0 < count < len(core)
             if fewer and all(_takes(op, kind) for op in operators):
-                there = "there is only one" if count == 1 else f"there are only {NUMBERS[count]}"
+                there = "there is only one" if count == 1 else f"there are only {in_words(count)}"
                 return f"each takes a {kind.replace('-', ' ')} of its own, and {there}"
         return ""
 

@@ -20,12 +20,13 @@ from polaris_nl.model.formula import Literal
 from polaris_nl.model.state import State
 from polaris_nl.model.world import World
 from polaris_nl.planning.barred import REACHED, barred, unmarked
+from polaris_nl.planning.budget import never
 from polaris_nl.planning.foils import Contrast, Foil
 from polaris_nl.planning.insisting import along, insisting, only_in
 from polaris_nl.planning.planner import Planner
 from polaris_nl.planning.reasons import Step
 from polaris_nl.planning.result import BranchingPlan
-from polaris_nl.planning.segments import BUDGET_S, SegmentResult, Segments, never
+from polaris_nl.planning.segments import BUDGET_S, SegmentResult, Segments
 
 
 def contrast(

@@ -7,12 +7,11 @@ from collections.abc import Iterator
 
 from polaris_nl.model.domain import KIND, conjuncts
 from polaris_nl.model.formula import And, Equal, Formula, Goal, Imply, Literal, Not, Quantified
-from polaris_nl.model.text import listed
+from polaris_nl.model.text import in_words, listed
 from polaris_nl.model.wording import Wording
 
 IT = "zz"
 """Stands for a variable in a fact that is put into words, and is replaced there."""
-NUMBERS = {2: "two", 3: "three", 4: "four", 5: "five"}
 
 
 def none_of(goal: Goal, wording: Wording) -> str:
@@ -33,8 +32,8 @@ def none_of(goal: Goal, wording: Wording) -> str:
     noun = (kinds or list(variable.types) or ["thing"])[0].replace("-", " ")
     noun = "thing" if noun == "object" else noun
     if several:
-        number = NUMBERS.get(len(found.variables), str(len(found.variables)))
-        return f'there are fewer than {number} things of the kind "{noun}"'
+        count = in_words(len(found.variables))
+        return f'there are fewer than {count} things of the kind "{noun}"'
     if found.quantifier == "exists":
         return (
             f"there is no {noun} for that" if kinds else "there is nothing that it could be about"

@@ -9,11 +9,12 @@ from polaris_nl.model.formula import Formula, Literal
 from polaris_nl.model.state import Mutexes, State
 from polaris_nl.model.wording import PlainWording, Wording
 from polaris_nl.model.world import World
+from polaris_nl.planning.budget import never
 from polaris_nl.planning.compile import Compiler, Draft
 from polaris_nl.planning.costs import Extra
 from polaris_nl.planning.mutexes import find_mutexes
 from polaris_nl.planning.result import BranchingPlan, Segment
-from polaris_nl.planning.segments import BUDGET_S, SegmentResult, Segments, never
+from polaris_nl.planning.segments import BUDGET_S, SegmentResult, Segments
 
 
 class Planner:

@@ -13,11 +13,11 @@ from polaris_nl.model.domain import Action
 from polaris_nl.model.formula import Literal
 from polaris_nl.model.goals import leaves_a_choice
 from polaris_nl.model.state import Mutexes
-from polaris_nl.model.text import listed, sentence, supposed
+from polaris_nl.model.text import in_words, listed, sentence, supposed
 from polaris_nl.model.wording import Wording
 from polaris_nl.model.world import World
 from polaris_nl.planning.budget import within
-from polaris_nl.planning.causes import NUMBERS, Causes, OutOfReach
+from polaris_nl.planning.causes import Causes, OutOfReach
 from polaris_nl.planning.cores import Conflicts, Meets, alike, conflicts
 from polaris_nl.planning.kinds import none_of
 from polaris_nl.planning.place import Place
@@ -247,7 +247,7 @@ class Diagnosis:
     def _together(self, goals: Sequence[Literal], size: int, why: str) -> str:
         """That some goals can't be met at once, or no more than some of them."""
         at_once = "at once" if len(goals) == 2 else "all at once"
-        nor = f", nor any {NUMBERS[size]} of these" if size < len(goals) else ""
+        nor = f", nor any {in_words(size)} of these" if size < len(goals) else ""
         return f"it can't be that {self._wording.events(goals)} {at_once}{nor}{why}"
 
     def _nothing_there(self, place: Place, cancelled: Callable[[], bool]) -> Problem:

@@ -14,7 +14,9 @@ from polaris_nl.model.evaluate import holds
 from polaris_nl.model.formula import Formula, Literal
 from polaris_nl.model.state import Mutexes, State
 from polaris_nl.model.world import World
+from polaris_nl.planning.budget import never
 from polaris_nl.planning.costs import Extra
+from polaris_nl.planning.grounding import Cancelled
 from polaris_nl.planning.memory import Memory
 from polaris_nl.planning.projection import Projection
 from polaris_nl.planning.result import Step
@@ -34,11 +36,6 @@ MOST_FACTS = 2_000_000
 
 Status = OneOf["solved", "unsolvable", "undecided", "cancelled"]
 Key = tuple[State, frozenset[Formula]]
-
-
-def never() -> bool:
-    """The answer to "is this cancelled?" where nothing cancels."""
-    return False
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,7 +157,7 @@ class Segments:
             checked = self._checked(state, goals, found)
             if checked is None and len(world.entities) < len(self._world.entities):
                 # The part was not all that matters after all, so the whole world is planned in.
-                task = self._tasks.of(self._world, state, goals)
+                task = self._tasks.of(self._world, state, goals, cancelled)
                 found = self._attempts(task, deadline, sought_s, None, cancelled)
                 checked = self._checked(state, goals, found)
             if checked is None:
@@ -173,6 +170,8 @@ class Segments:
                 )
                 return replace(checked, reason=checked.reason or reason)
             return checked
+        except Cancelled:
+            return SegmentResult("cancelled")
         except (PlanningError, FormatError) as error:
             return SegmentResult("undecided", reason=str(error))
 
@@ -186,7 +185,7 @@ class Segments:
         before: SegmentResult | None,
         cancelled: Callable[[], bool],
     ) -> SegmentResult:
-        task = self._tasks.of(world, small[0], goals)
+        task = self._tasks.of(world, small[0], goals, cancelled)
         found = self._attempts(task, deadline, sought_s, before, cancelled)
         # Only what is certain is remembered: an undecided segment may be decided next time.
         if found.status in ("solved", "unsolvable"):

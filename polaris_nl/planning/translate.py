@@ -11,15 +11,19 @@ import importlib
 import io
 import pkgutil
 import threading
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from types import ModuleType
 from typing import Any
 
 from polaris_nl.model.errors import PlanningError
+from polaris_nl.planning import grounding
+from polaris_nl.planning.budget import never
 
 _LOCK = threading.RLock()
 _PARTS: dict[str, ModuleType] = {}
+INVARIANTS_S = 3
+"""How long the translator may look for invariants, in seconds; it does without the rest."""
 END = "the end"
 """The name of actions that are no robot's; no PDDL file can have one that is called so."""
 
@@ -58,15 +62,23 @@ class Sas:
     operators: Sequence[SasOperator] = field(repr=False)
 
 
-def translate(domain: str, problem: str) -> Task:
+def translate(domain: str, problem: str, cancelled: Callable[[], bool] = never) -> Task:
     """Grounds a problem.
 
+    Args:
+        domain: PDDL text.
+        problem: PDDL text.
+        cancelled: asked now and then; True ends the work.
+
     Raises:
-        PlanningError: the translator doesn't support something in the domain; it is named.
+        PlanningError: the translator doesn't support something in the domain, which is named, or takes
+            too long.
+        Cancelled: `cancelled` said so.
     """
     with _LOCK:
         parts = _translator()
-        sas = _grounded(parts, _parse(parts, domain, problem))
+        task = _parse(parts, domain, problem)
+        sas = _grounded(parts, task, cancelled)
         if _is_unsolvable(sas):
             return Task("")
         out = io.StringIO()
@@ -74,14 +86,18 @@ def translate(domain: str, problem: str) -> Task:
         return Task(out.getvalue(), plain=_is_plain(sas))
 
 
-def translate_without_goals(domain: str, problem: str) -> Sas | None:
+def translate_without_goals(
+    domain: str, problem: str, cancelled: Callable[[], bool] = never
+) -> Sas | None:
     """Grounds a problem whose goals aren't known yet.
 
     Returns:
         The problem, or None where it needs axioms or conditional effects.
 
     Raises:
-        PlanningError: the translator doesn't support something in the domain; it is named.
+        PlanningError: the translator doesn't support something in the domain, which is named, or takes
+            too long.
+        Cancelled: `cancelled` said so.
     """
     with _LOCK:
         parts = _translator()
@@ -97,7 +113,7 @@ def translate_without_goals(domain: str, problem: str) -> Sas | None:
         options = parts["options"].get_options()
         options.filter_unimportant_vars = False
         try:
-            sas = _grounded(parts, task)
+            sas = _grounded(parts, task, cancelled)
         finally:
             options.filter_unimportant_vars = True
         if not _is_plain(sas) or sas.metric:
@@ -113,10 +129,13 @@ def translate_without_goals(domain: str, problem: str) -> Sas | None:
         )
 
 
-def _grounded(parts: dict[str, ModuleType], task: Any) -> Any:
+def _grounded(parts: dict[str, ModuleType], task: Any, cancelled: Callable[[], bool]) -> Any:
     try:
-        parts["normalize"].normalize(task)
-        return parts["main"].pddl_to_sas(task)
+        with grounding.limited(grounding.LIMIT_S, cancelled):
+            parts["normalize"].normalize(task)
+            return parts["main"].pddl_to_sas(task)
+    except PlanningError:
+        raise
     except (Exception, SystemExit) as error:
         raise PlanningError(f"The planner can't use this domain: {_reason(error)}.") from error
 
@@ -151,12 +170,15 @@ def _translator() -> dict[str, ModuleType]:
     if not _PARTS:
         package = importlib.import_module("fast_downward.translate")
         options = importlib.import_module("fast_downward.translate.options")
-        options.set_options(["domain.pddl", "problem.pddl"])
+        options.set_options(
+            ["domain.pddl", "problem.pddl", "--invariant-generation-max-time", str(INVARIANTS_S)]
+        )
         for module in pkgutil.walk_packages(package.__path__, "fast_downward.translate."):
             if not module.name.endswith("__main__"):
                 loaded: Any = importlib.import_module(module.name)
                 loaded.print = _quiet
                 _PARTS[module.name.rpartition(".")[2]] = loaded
+        grounding.watch(_PARTS)
     return _PARTS
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from polaris_nl.automaton.automaton import Automaton, Checkpoint, Transition
+from polaris_nl.automaton.automaton import START, Automaton, Checkpoint, Transition
 from polaris_nl.model.text import listed
 from polaris_nl.model.wording import Wording
 from polaris_nl.render.glyphs import plain
@@ -19,10 +19,12 @@ def mermaid(automaton: Automaton, wording: Wording) -> str:
     lines = ["flowchart TD"]
     for checkpoint in automaton.checkpoints.values():
         label = "<br/>".join(plain(x).translate(_IN_MERMAID) for x in _said(checkpoint, wording))
-        lines.append(f'  {ids[checkpoint.id]}["{label}"]')
+        shape = f'(["{label}"])' if checkpoint.id == START else f'["{label}"]'
+        lines.append(f"  {ids[checkpoint.id]}{shape}")
     for transition in automaton.transitions.values():
         label = plain(_condition(automaton, transition, wording)).translate(_IN_MERMAID)
-        arrow = f'-->|"{label}"|' if label else "-->"
+        line = "-.->" if automaton.is_else(transition.id) else "-->"
+        arrow = f'{line}|"{label}"|' if label else line
         lines.append(f"  {ids[transition.source]} {arrow} {ids[transition.target]}")
     return "\n".join(lines)
 
@@ -33,11 +35,13 @@ def dot(automaton: Automaton, wording: Wording) -> str:
     lines = ["digraph program {", "  node [shape=box];"]
     for checkpoint in automaton.checkpoints.values():
         label = "\\n".join(plain(x).translate(_IN_DOT) for x in _said(checkpoint, wording))
-        lines.append(f'  {ids[checkpoint.id]} [label="{label}"];')
+        shape = ", shape=ellipse" if checkpoint.id == START else ""
+        lines.append(f'  {ids[checkpoint.id]} [label="{label}"{shape}];')
     for transition in automaton.transitions.values():
         label = plain(_condition(automaton, transition, wording)).translate(_IN_DOT)
         arrow = f"{ids[transition.source]} -> {ids[transition.target]}"
-        lines.append(f'  {arrow} [label="{label}"];')
+        style = ", style=dashed" if automaton.is_else(transition.id) else ""
+        lines.append(f'  {arrow} [label="{label}"{style}];')
     return "\n".join([*lines, "}"])
 
 

@@ -150,7 +150,7 @@ def test_drawings_escape_what_they_cannot_take(draw: object) -> None:
     if draw is mermaid:
         assert lines == [
             "flowchart TD",
-            '  c0["start"]',
+            '  c0(["start"])',
             '  n1["#34;]; drop #35; #60;b#62;#38;#92; #96;x#96; [31m<br/>make sure that robot at the home"]',
             '  c2["plain"]',
             "  c0 --> n1",

@@ -24,6 +24,7 @@ from polaris_nl.model.formula import (
     Quantified,
     Variable,
     literals_in,
+    parse_formula,
 )
 
 from .reader import Talk, language_of, sentences
@@ -279,3 +280,26 @@ def test_options_and_names_have_capitals() -> None:
     assert wording.entity("nightstand") == "Mr Brown's nightstand"
     assert wording.entity("room-1") == "room 1"
     assert wording.entity("lunchtime") == "lunch"
+
+
+@pytest.mark.parametrize(
+    ("goal", "said"),
+    [
+        ("(exists (?d - object) (and (kind ?d bowl) (at ?d countertop)))", "bring a bowl to the countertop"),
+        ("(exists (?d - object) (and (at ?d sink) (is-clean ?d)))", "bring a clean thing to the sink"),
+        (
+            "(exists (?a ?b - object) (and (not (= ?a ?b)) (kind ?a glass) (kind ?b glass)"
+            " (at ?a sink) (at ?b sink)))",
+            "bring two glasses to the sink",
+        ),
+        (
+            "(exists (?a ?b - object) (and (kind ?a dish) (kind ?b dish) (not (= ?a ?b))"
+            " (is-clean ?a) (is-clean ?b)))",
+            "have two dishes clean",
+        ),
+        ("(exists (?c - container) (open ?c))", "open a container"),
+    ],
+)  # fmt: skip
+def test_goals_for_some_things_are_said_with_their_number(goal: str, said: str) -> None:
+    wording = language_of("dinner-party").wording
+    assert wording.goal(parse_formula(goal)) == said

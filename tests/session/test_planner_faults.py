@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from polaris_nl.planning import search, segments
+from polaris_nl.planning.budget import never
 from polaris_nl.planning.result import Problem
 from polaris_nl.snapshot import Snapshot
 
@@ -84,7 +85,7 @@ def test_a_planner_fault_is_said_and_the_session_goes_on(
     monkeypatch.chdir(folder)
     monkeypatch.setenv("TMPDIR", str(folder))
     monkeypatch.setattr(segments, "BUDGET_S", 0.3)
-    monkeypatch.setattr(segments.Segments.solve, "__defaults__", (0.3, segments.never, False))
+    monkeypatch.setattr(segments.Segments.solve, "__defaults__", (0.3, never, False))
     path = install(script)
     session = open_session()
     problem = the_problem(asked(session, HELD))
@@ -159,6 +160,6 @@ def test_a_planner_may_take_only_the_time_it_is_given_even_without_its_session(
     # Reading its problem to the end, the child knows that its limits have been set.
     install(f"cat > /dev/null\necho $(ulimit -t) $(ulimit -f) $(ulimit -c) > {limits}\nexit 12")
     with ThreadPoolExecutor(1) as pool:
-        found = pool.submit(search.search, "x", search.OPTIMAL, 1.5, segments.never)
+        found = pool.submit(search.search, "x", search.OPTIMAL, 1.5, never)
         assert limits.read_text(encoding="ascii").split() == ["3", "0", "0"]
         assert found.result(30).status == "undecided"
