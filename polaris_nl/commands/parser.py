@@ -79,6 +79,13 @@ def _program(parser: _Parser) -> None:
     _world(parser)
 
 
+def _recogniser(parser: _Parser) -> None:
+    parser.add_argument(
+        "--recogniser", choices=("vosk", "whisper"), default="vosk",
+        help="Vosk with the world's phrases (default), or Whisper tiny, which is slower",
+    )  # fmt: skip
+
+
 def _authoring(adder: _Adder) -> None:
     say = adder.add(
         "say",
@@ -213,6 +220,7 @@ def _speaking(adder: _Adder) -> None:
     transcribe.add_argument(
         "--free", action="store_true", help="recognise any words, not just the world's"
     )
+    _recogniser(transcribe)
     listen = adder.add(
         "listen",
         "author hands-free, by voice",
@@ -220,6 +228,7 @@ def _speaking(adder: _Adder) -> None:
         "  polaris-nl listen --world care-home --mic order.wav\n"
         "  polaris-nl listen --world care-home --mic tcp://127.0.0.1:10700 --mode wake",
     )
+    _recogniser(listen)
     _program_option(listen)
     _world(listen)
     listen.add_argument(

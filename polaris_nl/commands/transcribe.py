@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from polaris_nl.commands.common import complain, print_json, print_text, session_of
-from polaris_nl.hands_free.phrases import spoken_phrases
+from polaris_nl.hands_free.phrases import spoken_names, spoken_phrases
 from polaris_nl.hands_free.recording import kept
 from polaris_nl.hands_free.weight import weigher
 from polaris_nl.language.interpretation import Refusal
@@ -30,7 +30,9 @@ def run(arguments: Namespace) -> int:
     code = 0
     maker = EarMaker()
     with session_of(arguments) as session:
-        ears = maker.free_ears() if arguments.free else ears_for(session, maker)
+        ears = (
+            maker.free_ears() if arguments.free else ears_for(session, maker, arguments.recogniser)
+        )
         start = session.snapshot.automaton
         for number, path in enumerate(arguments.files):
             if number and not arguments.dialogue:
@@ -75,9 +77,16 @@ def replay(path: Path, ears: Ears, session: Session, as_json: bool) -> int:
     return code
 
 
-def ears_for(session: Session, maker: EarMaker) -> Ears:
-    """Ears for a session's world."""
-    return maker.ears(spoken_phrases(session.understanding))
+def ears_for(session: Session, maker: EarMaker, recogniser: str = "vosk") -> Ears:
+    """Ears for a session's world.
+
+    Raises:
+        SpeechError: the recogniser's packages are missing.
+    """
+    phrases = spoken_phrases(session.understanding)
+    if recogniser == "whisper":
+        return maker.whisper_ears(phrases)
+    return maker.ears(phrases, spoken_names(session.understanding))
 
 
 def hear_file(path: Path, ears: Ears, session: Session) -> tuple[Utterance, Answer]:

@@ -7,7 +7,17 @@ from dataclasses import dataclass
 
 NUMBERS = ("one", "two", "three")
 _ORDINALS = ("first", "second", "third")
-_LEADS = ("", "number ", "choice ", "option ", "the ", "i mean ", "i meant ")
+_LEADS = (
+    "",
+    "number ",
+    "choice ",
+    "option ",
+    "the ",
+    "i mean ",
+    "i meant ",
+    "i mean the ",
+    "i meant the ",
+)
 _NONE = (
     "none", "none of them", "none of these", "no", "neither", "nope", "never mind", "cancel", "forget it",
 )  # fmt: skip

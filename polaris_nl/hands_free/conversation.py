@@ -14,6 +14,7 @@ from polaris_nl.execution.events import Event, Said
 from polaris_nl.execution.events import Heard as HeardEvent
 from polaris_nl.execution.state import HumanCommand
 from polaris_nl.hands_free.choices import Choices, choices_among
+from polaris_nl.hands_free.phrases import spoken_names
 from polaris_nl.hands_free.running import Running, told
 from polaris_nl.session import Session
 from polaris_nl.snapshot import Answer
@@ -21,8 +22,9 @@ from polaris_nl.speech.hearing import Utterance
 
 FAILURES = 2
 """After so many failures in a row, choices are offered."""
-MEANT = 0.4
-"""Speech that isn't understood, but that both decodings hear so alike, was meant for the robot."""
+MEANT, MEANT_WHEN_CALLED = 0.15, 0.6
+"""Speech that isn't understood, but that both decodings hear so alike, was meant for the robot: it gets an
+answer. Without a call much speech isn't, so there they have to be all but the same, and to name something."""
 
 
 @dataclass(frozen=True)
@@ -68,6 +70,7 @@ class Conversation:
         self.now = now
         self._failures = 0
         self._choices: Choices | None = None
+        self._names = spoken_names(session.understanding)
 
     @property
     def _runs(self) -> Running | None:
@@ -107,10 +110,17 @@ class Conversation:
         if said.accepted:
             self._failures, self._choices = 0, None
             return self._act(said, said.text, heard)
-        if not said.text or not (called or said.different <= MEANT):
+        if not self._was_meant(said, called):
             self._sink(heard)
             return Reply(said)  # Not meant for the robot: it doesn't butt in.
         return self._failed(said, heard, near)
+
+    def _was_meant(self, said: Utterance, called: bool) -> bool:
+        """Whether speech that isn't understood was meant for the robot all the same, and wants an answer."""
+        if called:
+            return bool(said.text) and said.different <= MEANT_WHEN_CALLED
+        names_something = any(f" {name} " in f" {said.text} " for name in self._names)
+        return names_something and said.different <= MEANT
 
     def _act(self, said: Utterance, text: str, heard: HeardEvent) -> Reply:
         runs = self._runs

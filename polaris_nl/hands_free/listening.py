@@ -15,6 +15,7 @@ from typing import Protocol
 
 from polaris_nl.execution.events import Heard as HeardEvent
 from polaris_nl.hands_free.conversation import Conversation, Reply
+from polaris_nl.hands_free.phrases import SLEEP, WAKE
 from polaris_nl.hands_free.weight import weigher
 from polaris_nl.speech.ears import Ears
 from polaris_nl.speech.hearer import Heard, Hearer, Quick, Started
@@ -25,9 +26,6 @@ from polaris_nl.speech.speaker import Speaker
 from polaris_nl.speech.voices import chime
 from polaris_nl.speech.wake import WakeWord
 
-SLEEP = "go to sleep"
-WAKE = "wake up"
-MODE_PHRASES = (SLEEP, WAKE)
 _PATIENCE_S = 30.0
 
 
@@ -104,7 +102,6 @@ class Listening:
         worker = threading.Thread(target=self._work, name="answering", daemon=True)
         worker.start()
         try:
-            self._show()
             for sound in self.source.sound():
                 if isinstance(sound, Trouble):
                     self.face.tells(sound.text)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import queue
 import threading
 from collections.abc import Callable, Iterable
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from polaris_nl.automaton.automaton import Automaton
@@ -82,11 +83,17 @@ class Runs:
         conversation: its program is run; its words command the run.
         sink: is given the run's events, too.
         tell: says a sentence.
+        log: the conversation's log, beside which each run gets one of its own; None for the log folder.
     """
 
     def __init__(
-        self, conversation: Conversation, sink: Callable[[Event], None], tell: Callable[[str], None]
+        self,
+        conversation: Conversation,
+        sink: Callable[[Event], None],
+        tell: Callable[[str], None],
+        log: Path | None = None,
     ) -> None:
+        self._log = log
         self._conversation = conversation
         self._sink = sink
         self._tell = tell
@@ -97,8 +104,16 @@ class Runs:
         assert answer is not None, "a run follows from an answer"
         automaton, plan = answer.snapshot.automaton, answer.snapshot.plan
         assert plan is not None, "nobody says yes to a program without a plan"
-        order = RunOrder(automaton, plan, session.planner, live=True)
+        order = RunOrder(automaton, plan, session.planner, live=True, log=self._path())
         self._conversation.running = Running(order, self._show, self._over)
+
+    def _path(self) -> Path | None:
+        if self._log is None:
+            return None
+        number = 1
+        while (path := self._log.with_name(f"{self._log.stem}-run-{number}.mcap")).exists():
+            number += 1
+        return path
 
     def close(self, seconds: float = 5.0) -> None:
         """Stops a run that goes on."""

@@ -19,6 +19,8 @@ def weight_of(meant: Interpretation, awaits_yes: bool = False) -> Weight | None:
     """
     if meant.outcome == "refused":
         return None
+    if meant.outcome == "question":
+        return Weight.ASKING
     if meant.command in _MOVING or (awaits_yes and meant.command == "yes"):
         return Weight.MOVING
     if meant.edits or meant.command in _CHANGING:

@@ -111,5 +111,5 @@ def level(block: bytes) -> float:
 
 
 def _int16(samples: Any) -> bytes:
-    data: bytes = (samples.clip(-1.0, 1.0) * 32767).astype("<i2").tobytes()
+    data: bytes = (samples * 32768).round().clip(-32768, 32767).astype("<i2").tobytes()
     return data

@@ -76,20 +76,38 @@ class EarMaker:
         self._wide = VoskModel(folder)
         self._narrow = VoskModel(folder, NARROW)
 
-    def ears(self, phrases: Sequence[str], words: Sequence[str] = ()) -> Ears:
+    def ears(self, phrases: Sequence[str], names: Iterable[str] = ()) -> Ears:
         """Ears for a world.
 
         Args:
             phrases: what may be said.
-            words: words of the language that may stand for one that the recogniser lacks.
+            names: what things are called: words of theirs that the recogniser lacks are listened for under
+                others; other phrases with such words are left out, there are more ways to say the same.
         """
         vocabulary = {word for phrase in phrases for word in phrase.split()}
-        alikes = sound_alikes(vocabulary, self._wide.knows, words)
+        named = {word for name in names for word in name.split()}
+        owned = {word for word in vocabulary if word.endswith("'s")}
+        bridged = sound_alikes(named | owned, self._wide.knows)
+        gaps = (*bridged.gaps, *self._wide.missing(vocabulary - named - owned))
+        alikes = SoundAlikes(bridged.inward, gaps)
         phrased = VoskRecogniser(self._wide, alikes.listened_for(phrases))
         free = VoskRecogniser(self._narrow)
         ways = Ways(alikes, Repairer(vocabulary))
         quick = VoskRecogniser(self._narrow, QUICK_PHRASES, alternatives=1)
         return Ears(phrased.decoder(), free.decoder(), quick.decoder(), self._activity(), ways)
+
+    def whisper_ears(self, phrases: Sequence[str]) -> Ears:
+        """Ears of the second recogniser: it knows no phrases, so what it hears is mended toward them.
+
+        Raises:
+            SpeechError: its packages are missing.
+        """
+        from polaris_nl.speech.whisper_recogniser import WhisperRecogniser
+
+        vocabulary = {word for phrase in phrases for word in phrase.split()}
+        quick = VoskRecogniser(self._narrow, QUICK_PHRASES, alternatives=1)
+        ways = Ways(repairer=Repairer(vocabulary))
+        return Ears(WhisperRecogniser().decoder(), None, quick.decoder(), self._activity(), ways)
 
     def free_ears(self) -> Ears:
         """Ears that expect nothing in particular."""

@@ -83,8 +83,8 @@ class Hearer:
         self._ears = ears
         self._cutter = Cutter(ears.activity)
         self._audio = bytearray()
-        self._attentive = False
-        self._begin()
+        self._attentive = True
+        self._drop()
 
     def _begin(self) -> None:
         self._audio.clear()

@@ -8,8 +8,8 @@ more a mistake would cost, the better the two must agree.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 from polaris_nl.speech.lexicon import SoundAlikes
 from polaris_nl.speech.recogniser import UNKNOWN, Spoken
@@ -17,9 +17,23 @@ from polaris_nl.speech.repair import MOST_TRIED, Repairer, apart
 from polaris_nl.speech.weight import Weigh, Weight
 
 MOST_DIFFERENT: Mapping[Weight, float] = {
-    Weight.HARMLESS: 0.65, Weight.CHANGING: 0.6, Weight.MOVING: 0.5,
+    Weight.ASKING: 0.15, Weight.HARMLESS: 0.5, Weight.CHANGING: 0.5, Weight.MOVING: 0.45,
 }  # fmt: skip
 """The most that free decoding may differ, in characters of the longer text."""
+SHORT, MORE_FOR_SHORT = 2, 0.15
+"""A few words are heard freely as others that sound alike: so many words may differ by so much more."""
+LONG, LONG_HARMLESS = 5, 0.2
+"""A question of so many words may differ by no more: there is much that other people's talk can pass for."""
+FOREIGN_WORDS, FEW_DIFFERENT = 2, 0.25
+"""So many words that mean nothing here, and sound like none of those heard, are other people's talk, unless
+the two decodings differ by no more than this."""
+NEAR = 0.2
+"""How far from the likeliest reading the free decoding may be to be one itself, where others make sense."""
+LOOKED_AT, TRIED = 4, 16
+"""Readings that make sense, and readings of all, after which no more are looked at."""
+RANK_COST, ASKING_COST, FREE_COST = 0.01, 0.15, 0.015
+"""What speaks against a reading besides its difference: each place in the list, that it makes sense only in
+part, and that nothing but the free decoding has it."""
 MOST_REPAIRED = 0.3
 """How different a repaired sentence may sound from what was heard freely."""
 
@@ -75,15 +89,14 @@ def utterance(pieces: Sequence[Spoken], weigh: Weigh, ways: Ways = Ways()) -> Ut
     chosen: list[str] = []
     repaired = ""
     for piece in pieces:
-        found = _with(chosen, _readings(piece, ways.alikes), weigh)
-        if found is None and ways.repairer is not None:
-            found = _with(chosen, _repairs(piece, ways.repairer), weigh)
-            repaired = repaired or (piece.alternatives[0] if found is not None else "")
-        chosen = found or [*chosen, ways.alikes.put_back(piece.alternatives[0])[-1]]
+        found = _best(chosen, piece, weigh, ways)
+        repaired = repaired or (piece.alternatives[0] if found and found.repaired else "")
+        heard = ways.alikes.put_back(piece.alternatives[0])[-1]
+        chosen = found.pieces if found else [*chosen, heard]
     text = BREAK.join(chosen)
     free = " ".join(piece.free for piece in pieces if piece.free)
     different = difference(text, free)
-    why_not = _why_not(text, different, weigh)
+    why_not = _why_not(text, free, different, weigh, ways)
     return Utterance(
         text,
         accepted=not why_not,
@@ -96,7 +109,7 @@ def utterance(pieces: Sequence[Spoken], weigh: Weigh, ways: Ways = Ways()) -> Ut
     )
 
 
-def _why_not(text: str, different: float, weigh: Weigh) -> str:
+def _why_not(text: str, free: str, different: float, weigh: Weigh, ways: Ways) -> str:
     if not text:
         return "no words"
     if UNKNOWN in text:
@@ -104,17 +117,88 @@ def _why_not(text: str, different: float, weigh: Weigh) -> str:
     weight = weigh(text)
     if weight is None:
         return "not understood"
-    if different > MOST_DIFFERENT[weight]:
+    if different > _allowed(weight, len(text.split())):
         return f"heard freely it is {different:.2f} different"
+    if different > FEW_DIFFERENT and ways.repairer is not None:
+        foreign = ways.repairer.foreign(text, free)
+        if len(foreign) >= FOREIGN_WORDS:
+            return f"it is about {', '.join(foreign)}"
     return ""
 
 
+def _allowed(weight: Weight, words: int) -> float:
+    """How far the two decodings of so many words may be apart."""
+    if weight is Weight.HARMLESS and words >= LONG:
+        return LONG_HARMLESS
+    short = words <= SHORT and weight in (Weight.HARMLESS, Weight.MOVING)
+    return MOST_DIFFERENT[weight] + (MORE_FOR_SHORT if short else 0.0)
+
+
 def difference(text: str, free: str) -> float:
-    """How far the two decodings are apart, in characters of the longer one; 0 without a second one."""
+    """How far the two decodings are apart, in characters of the longer one; 0 without a second one.
+
+    A few words are compared by their sound as well: freely, they are heard as others that sound alike.
+    """
     from rapidfuzz.distance import Levenshtein
 
     plain = text.replace(BREAK, " ")
-    return float(Levenshtein.normalized_distance(plain, free)) if free else 0.0
+    if not free:
+        return 0.0
+    by_letter = float(Levenshtein.normalized_distance(plain, free))
+    return min(by_letter, apart(plain, free)) if len(plain.split()) <= SHORT else by_letter
+
+
+@dataclass(frozen=True, slots=True)
+class _Found:
+    """The pieces so far with a reading of the next one."""
+
+    pieces: list[str]
+    cost: float
+    repaired: bool = False
+
+
+def _best(chosen: list[str], piece: Spoken, weigh: Weigh, ways: Ways) -> _Found | None:
+    """The reading that makes sense and that most speaks for; None if none makes sense."""
+    found: list[_Found] = []
+    for rank, reading in enumerate(itertools.islice(_readings(piece, ways.alikes), TRIED)):
+        found += _placed(chosen, reading, piece.free, RANK_COST * rank, weigh)
+        whole = bool(found) and found[-1].pieces[-1] == piece.free and found[-1].cost < ASKING_COST
+        if len(found) >= LOOKED_AT or whole:
+            break
+    if not found:
+        rest = itertools.islice(_readings(piece, ways.alikes), TRIED, None)
+        for reading in rest:
+            if found := _placed(chosen, reading, piece.free, 0.0, weigh):
+                break
+    heard_so = piece.free and difference(piece.alternatives[0], piece.free) <= NEAR
+    if piece.free and ways.repairer is not None and (heard_so or not found):
+        for one in _placed(chosen, piece.free, piece.free, FREE_COST, weigh):
+            found.append(replace(one, repaired=True))
+    if not found and ways.repairer is not None:
+        return _repaired(chosen, piece, weigh, ways.repairer)
+    return min(found, key=lambda f: f.cost, default=None)
+
+
+def _placed(chosen: list[str], reading: str, free: str, cost: float, weigh: Weigh) -> list[_Found]:
+    """A reading as a new sentence, or as more of the last; empty where it makes no sense."""
+    ways_on = [[*chosen, reading]]
+    if chosen:
+        ways_on.append([*chosen[:-1], f"{chosen[-1]} {reading}"])
+    for pieces in ways_on:
+        weight = weigh(BREAK.join(pieces))
+        if weight is not None:
+            asking = ASKING_COST if weight is Weight.ASKING else 0.0
+            return [_Found(pieces, cost + asking + difference(reading, free))]
+    return []
+
+
+def _repaired(chosen: list[str], piece: Spoken, weigh: Weigh, repairer: Repairer) -> _Found | None:
+    """The nearest repair that makes sense as a whole: nobody is asked about words that nobody said."""
+    for text in _repairs(piece, repairer):
+        for found in _placed(chosen, text, "", 0.0, weigh):
+            if found.cost < ASKING_COST:
+                return replace(found, repaired=True)
+    return None
 
 
 def near(pieces: Sequence[Spoken], weigh: Weigh, ways: Ways = Ways(), most: int = 3) -> list[str]:
@@ -141,23 +225,7 @@ def _readings(piece: Spoken, alikes: SoundAlikes) -> Iterator[str]:
 
 def _repairs(piece: Spoken, repairer: Repairer) -> Iterator[str]:
     heard = [text for text in (piece.free, piece.alternatives[0]) if text and UNKNOWN not in text]
-    if piece.free:
-        yield piece.free
     near = (r.text for r in repairer.candidates(heard))
     for text in itertools.islice(near, MOST_TRIED):
         if not piece.free or apart(text, piece.free) <= MOST_REPAIRED:
             yield text
-
-
-def _with(chosen: list[str], readings: Iterable[str], weigh: Weigh) -> list[str] | None:
-    """The pieces with the first reading that makes sense as a new sentence or as more of the last."""
-    readings = tuple(readings)
-    for reading in readings:
-        if weigh(BREAK.join([*chosen, reading])) is not None:
-            return [*chosen, reading]
-    if chosen:
-        for reading in readings:
-            joined = [*chosen[:-1], f"{chosen[-1]} {reading}"]
-            if weigh(BREAK.join(joined)) is not None:
-                return joined
-    return None

@@ -16,6 +16,8 @@ Knows = Callable[[str], bool]
 """Whether the recogniser has a word."""
 SHORTEST_PART = 2
 MOST_APART = 0.4
+COMMON = 200
+"""How often a word has to occur in the dictionary's texts to stand for another."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +49,17 @@ class SoundAlikes:
         return (heard, found) if found != heard else (heard,)
 
 
-def sound_alikes(words: Iterable[str], knows: Knows, others: Sequence[str] = ()) -> SoundAlikes:
+def common_words() -> Sequence[str]:
+    """The commoner words of the language, for standing in."""
+    from spellchecker import SpellChecker
+
+    counted = SpellChecker().word_frequency.items()
+    return [word for word, count in sorted(counted) if count >= COMMON and word.isalpha()]
+
+
+def sound_alikes(
+    words: Iterable[str], knows: Knows, others: Callable[[], Sequence[str]] = common_words
+) -> SoundAlikes:
     """A table for the words that are missing.
 
     Args:
@@ -56,7 +68,8 @@ def sound_alikes(words: Iterable[str], knows: Knows, others: Sequence[str] = ())
         others: words of the language that may stand for a missing one, besides those of its own letters.
     """
     missing = [w for w in sorted(set(words)) if not knows(w)]
-    usable = [w for w in others if knows(w)] if missing else []
+    hard = any(not w.endswith("'s") for w in missing)
+    usable = [w for w in others() if knows(w)] if hard else []
     inward = {w: alike for w in missing if (alike := _alike(w, knows, usable))}
     return SoundAlikes(inward, tuple(w for w in missing if w not in inward))
 

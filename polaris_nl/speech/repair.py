@@ -55,6 +55,15 @@ class Repairer:
                 seen.add(repair.text)
                 yield repair
 
+    def foreign(self, text: str, free: str) -> list[str]:
+        """The words heard freely that mean nothing here, and that sound like no word of a text."""
+        words = text.split()
+        return [
+            word
+            for word in free.split()
+            if word not in self._known and all(apart(word, other) > ALIKE for other in words)
+        ]
+
     def _of(self, text: str) -> list[Repair]:
         words = [w for w in text.split() if w not in FILLERS]
         choices = [self._choices(word) for word in words]
@@ -91,7 +100,7 @@ def apart(one: str, other: str) -> float:
     """How different two texts sound, from 0 to 1: by their sounds, and by their letters as well."""
     from rapidfuzz.distance import Levenshtein
 
-    sounds = (" ".join(map(sound, one.split())), " ".join(map(sound, other.split())))
+    sounds = ("".join(map(sound, one.split())), "".join(map(sound, other.split())))
     by_sound = Levenshtein.normalized_distance(*sounds)
     by_letter = Levenshtein.normalized_distance(one, other)
     return float(by_sound + by_letter) / 2

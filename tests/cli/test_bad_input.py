@@ -169,3 +169,19 @@ def test_a_reader_that_goes_away_is_no_error(lunch: Path) -> None:
         ["bash", "-c", script], cwd=ROOT, capture_output=True, timeout=60, check=False
     )
     assert b"Traceback" not in shell.stderr
+
+
+@pytest.mark.parametrize(
+    ("options", "code", "reason"),
+    [
+        (("--mic", "tcp://192.0.2.1:10700"), 2, "another machine"),
+        (("--mic", "nowhere.wav"), 1, "There is no recording nowhere.wav"),
+        (("--record",), 2, "name one with --log"),
+    ],
+)
+def test_listening_to_what_can_t_be_heard(
+    command: Command, options: tuple[str, ...], code: int, reason: str
+) -> None:
+    result = command("listen", "--world", "care-home", *options)
+    assert result.code == code
+    assert reason in result.err

@@ -8,8 +8,9 @@ import numpy
 import pytest
 import soundfile
 
-from polaris_nl.model.errors import SpeechError, UsageError
-from polaris_nl.speech.audio import BLOCK, RATE, file_blocks, source_blocks
+from polaris_nl.model.errors import SpeechError
+from polaris_nl.speech.audio import BLOCK, RATE, Converter, file_blocks, level
+from polaris_nl.speech.sources import source_for
 
 
 def write_tone(path: Path, rate: int, channels: int, seconds: float = 1.0) -> Path:
@@ -57,11 +58,30 @@ def test_a_missing_file_and_a_soundless_one_are_named(tmp_path: Path) -> None:
         list(file_blocks(silent))
 
 
-def test_a_network_microphone_is_said_to_come_later() -> None:
-    with pytest.raises(UsageError, match="isn't there yet"):
-        source_blocks("tcp://localhost:1")
-
-
 def test_a_recording_serves_as_a_microphone(tmp_path: Path) -> None:
     path = write_tone(tmp_path / "a.wav", RATE, 1)
-    assert b"".join(source_blocks(str(path))) == b"".join(file_blocks(path))
+    assert list(source_for(str(path)).sound()) == list(file_blocks(path))
+
+
+def test_raw_sound_of_another_form_is_converted() -> None:
+    times = numpy.arange(48_000) / 48_000
+    tone = (0.5 * numpy.sin(2 * numpy.pi * 440 * times) * 2**31).astype("<i4")
+    raw = numpy.column_stack([tone, tone]).tobytes()
+    converter = Converter(48_000)
+    size = 4_801 * 8 // 10
+    parts = [
+        block
+        for at in range(0, len(raw), size - size % 8)
+        for block in converter.push_bytes(raw[at : at + size - size % 8], 4, 2)
+    ]
+    samples = numpy.frombuffer(b"".join([*parts, *converter.rest()]), dtype="<i2")
+    assert abs(len(samples) - RATE) <= BLOCK / 4
+    assert 15_500 < numpy.abs(samples).max() < 17_000
+
+
+def test_level_is_in_decibels_below_full_scale() -> None:
+    assert level(b"\0\0" * BLOCK) < -85
+    square = numpy.full(BLOCK, 32767, dtype="<i2")
+    square[::2] = -32767
+    assert abs(level(square.tobytes())) < 0.1
+    assert abs(level((square // 10).astype("<i2").tobytes()) + 20) < 0.1

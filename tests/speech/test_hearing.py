@@ -67,8 +67,50 @@ def test_free_listening_must_bear_the_words_out() -> None:
 
 @pytest.mark.parametrize(("weight", "accepted"), [(Weight.HARMLESS, True), (Weight.MOVING, False)])
 def test_what_moves_the_robot_needs_more_agreement(weight: Weight, accepted: bool) -> None:
-    piece = spoken("run it now", free="rum eating")
+    piece = spoken("run it now", free="rum it now mostly")
     assert utterance([piece], when(lambda t: t == "run it now", weight)).accepted is accepted
+
+
+def test_of_readings_that_make_sense_the_one_heard_freely_wins() -> None:
+    piece = spoken(
+        "close the cup and closet", "close the cup and close it", free="close the cup and close it"
+    )
+    assert utterance([piece], when(lambda t: True)).text == "close the cup and close it"
+
+
+def test_a_reading_that_makes_sense_only_in_part_gives_way_to_a_whole_one() -> None:
+    piece = spoken(
+        "put the bowl and the table", "put the bowl on the table", free="put the bowl and the table"
+    )
+
+    def weigh(text: str) -> Weight | None:
+        return Weight.CHANGING if " on " in text else Weight.ASKING
+
+    assert utterance([piece], weigh).text == "put the bowl on the table"
+
+
+def test_talk_that_makes_sense_only_in_part_is_left_alone() -> None:
+    piece = spoken(
+        "please don't the dock at the table", free="please don't feed the dog at the table"
+    )
+    assert not utterance([piece], when(lambda t: "dock" in t, Weight.ASKING)).accepted
+
+
+def test_a_sentence_with_words_of_another_world_is_left_alone() -> None:
+    piece = spoken(
+        "please go via the dock at the table", free="please don't feed the dog at the table"
+    )
+    ways = Ways(repairer=Repairer(["please", "go", "via", "the", "dock", "at", "table"]))
+    weigh = when(lambda t: "dock" in t)
+    assert utterance([piece], weigh).accepted
+    said = utterance([piece], weigh, ways)
+    assert not said.accepted
+    assert said.why_not == "it is about don't, feed"
+
+
+def test_a_short_command_may_be_heard_freely_as_what_sounds_alike() -> None:
+    weigh = when(lambda t: t == "redo")
+    assert utterance([spoken("redo", free="read though")], weigh).accepted
 
 
 def repaired(piece: Spoken, good: str) -> Utterance:

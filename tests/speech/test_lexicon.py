@@ -38,14 +38,14 @@ KNOWN = frozenset(
     ],
 )
 def test_what_stands_for_a_missing_word(missing: str, alike: str) -> None:
-    table = sound_alikes([missing, "home"], KNOWN.__contains__, sorted(KNOWN))
+    table = sound_alikes([missing, "home"], KNOWN.__contains__, lambda: sorted(KNOWN))
     assert table.inward == {missing: alike}
     assert table.listened_for([f"bring the {missing}", "home"]) == [f"bring the {alike}", "home"]
     assert table.put_back(f"bring the {alike}") == (f"bring the {alike}", f"bring the {missing}")
 
 
 def test_a_word_that_nothing_stands_for_is_a_gap_and_its_phrases_are_left_out() -> None:
-    table = sound_alikes(["qwv", "home"], KNOWN.__contains__, sorted(KNOWN))
+    table = sound_alikes(["qwv", "home"], KNOWN.__contains__, lambda: sorted(KNOWN))
     assert table.gaps == ("qwv",)
     assert table.listened_for(["bring the qwv", "home"]) == ["home"]
     assert table.put_back("home") == ("home",)
