@@ -28,7 +28,7 @@ class ReplayedLogs:
 
         def watched(log: LogWriter, *args: Any) -> None:
             close(log, *args)
-            if OF_RUNS in log._attachments and not log.failure and log.path not in closed:
+            if OF_RUNS in log._records.attachments and not log.failure and log.path not in closed:
                 closed.append(log.path)
 
         patch.setattr(LogWriter, "close", watched)

@@ -11,7 +11,7 @@ from pathlib import Path
 from polaris_nl.automaton.program import write_program
 from polaris_nl.commands import plan as plan_command
 from polaris_nl.commands.common import print_json, print_rows, print_text, shown_path, width
-from polaris_nl.commands.review import run_lines
+from polaris_nl.commands.review_text import run_lines
 from polaris_nl.commands.run import shower
 from polaris_nl.commands.transcribe import ears_for, hear_file
 from polaris_nl.execution.events import Event

@@ -19,7 +19,7 @@ from polaris_nl.model.wording import Wording
 from polaris_nl.render.glyphs import ASCII, Glyphs, plain
 from polaris_nl.render.layout import Row
 from polaris_nl.render.log import event_rows
-from polaris_nl.render.spans import timeline_rows
+from polaris_nl.render.run_timeline import timeline_rows
 
 if TYPE_CHECKING:
     from polaris_nl.replays import Replayed

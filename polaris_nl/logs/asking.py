@@ -206,13 +206,15 @@ def _why_event(events: Events, words: str, wording: Wording | None) -> Reply:
     because = f" {reason[:1].upper()}{reason[1:].rstrip('.')}." if reason else ""
     then = ""
     if isinstance(event, GoalSent):
-        then = f" It is for {_name(events, event)}, with {len(event.plan) - 1} more actions to go."
+        rest = len(event.plan) - 1
+        more = f", with {rest} more action{'s' if rest > 1 else ''} to go" if rest > 0 else ""
+        then = f" It is for {_name(events, event)}{more}."
     return Reply(f"{clause(event, wording)}{because}{then}", _of(events, event), event.id)
 
 
 def said_words(event: Event) -> str:
     """What a question about an event may share words with."""
-    return f"{clause(event)} {getattr(event, 'action', '')} {getattr(event, 'name', '')}"
+    return f"{clause(event)} {getattr(event, 'name', '')} {'' if event.text else getattr(event, 'action', '')}"
 
 
 _QUESTIONS: tuple[tuple[str, Callable[[Events, str, Wording | None], Reply]], ...] = (

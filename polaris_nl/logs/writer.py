@@ -9,7 +9,6 @@ first could take time, events queue up in memory, up to a limit, and what doesn'
 from __future__ import annotations
 
 import contextlib
-import json
 import threading
 import time
 from collections import Counter, deque
@@ -17,9 +16,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import TracebackType
-from typing import Any
 
-from polaris_nl import __version__
 from polaris_nl.execution.events import (
     Edited,
     Event,
@@ -31,50 +28,17 @@ from polaris_nl.execution.events import (
     RunStarted,
     Stepped,
 )
-from polaris_nl.logs import rosout
 from polaris_nl.logs.finalising import finalise
 from polaris_nl.logs.journal import Journal
-from polaris_nl.logs.paths import part_path
-from polaris_nl.logs.privacy import KEEP_ALL, Privacy
-from polaris_nl.logs.schema import names_of, schema_of
-from polaris_nl.logs.tracing import Tracer
+from polaris_nl.logs.keeping import LogSettings as LogSettings
+from polaris_nl.logs.keeping import RawKind as RawKind
+from polaris_nl.logs.keeping import attachments_of as attachments_of
+from polaris_nl.logs.records import Records
 from polaris_nl.model.errors import LogError
 
-SCHEMA = "polaris-log/1"
 FORCED: tuple[type[Event], ...] = (Edited, GoalSent, GoalConfirmed, Halted, RunStarted, RunEnded)
 """Events after which the file is forced to the disk, so that even a power cut keeps them."""
 AUDIO = "audio/"
-_UNCHANGED: tuple[object, ...] = (None, [], 0)
-_encode = json.JSONEncoder(ensure_ascii=False, separators=(",", ":")).encode
-
-
-@dataclass(frozen=True, slots=True)
-class RawKind:
-    """What raw messages are: the type's name and definition, and how both are written."""
-
-    name: str
-    definition: str
-    encoding: str = "ros2msg"
-    message_encoding: str = "cdr"
-
-
-@dataclass(frozen=True, slots=True)
-class LogSettings:
-    """How a log is kept.
-
-    Attributes:
-        part_bytes: when a log goes on in another file, in bytes; it does so at midnight, too.
-        patience_s: how long a caller waits for another one to have written, in seconds.
-        slow_s: how long the disk may take before it is spared by queueing, in seconds.
-        queue: how many messages may wait in memory; robot messages and inputs get half of it.
-        privacy: what isn't kept.
-    """
-
-    part_bytes: int = 256 << 20
-    patience_s: float = 0.0005
-    slow_s: float = 0.05
-    queue: int = 20_000
-    privacy: Privacy = KEEP_ALL
 
 
 @dataclass(slots=True)
@@ -99,7 +63,6 @@ class LogWriter:
     Attributes:
         failure: why nothing is written any more, or "".
         lost: what is missing since the disk was too slow, or "".
-        count: how many events were written.
 
     Raises:
         LogError: the file can't be made.
@@ -113,18 +76,15 @@ class LogWriter:
     ) -> None:
         self.path = path
         self.failure = self.lost = ""
-        self.count = 0
         self._settings = settings or LogSettings()
-        self._attachments = self._settings.privacy.of_attachments(attachments or {})
-        self._tracer = Tracer()
         self._lock = threading.Lock()
         self._backlog: deque[Callable[[], None]] = deque()
         self._dropped: Counter[str] = Counter()
-        self._part, self._until, self._closed = 1, 0, False
+        self._closed = False
         self._disk = _Disk()
         self._wake = threading.Condition()
         try:
-            self._journal = self._begin(path)
+            self._records = Records(path, attachments or {}, self._settings, self._retire)
         except FileExistsError as error:
             raise LogError(
                 f"There is a file {path} already; choose another name for the log."
@@ -163,7 +123,8 @@ class LogWriter:
         """
         if self._settings.privacy.in_bytes(data):
             return False
-        return self._hand_over(lambda: self._write_raw(topic, kind, time, data), topic, True)
+        write = self._records.write_raw
+        return self._hand_over(lambda: write(topic, kind, time, data), topic, True)
 
     def attach(self, name: str, kind: str, data: bytes, time: float) -> bool:
         """Adds a file, such as the sound of what was said.
@@ -181,7 +142,7 @@ class LogWriter:
             return False
         nanoseconds = max(int(time * 1e9), 0)
         return self._hand_over(
-            lambda: self._journal.attach(name, kind, data, nanoseconds), name, False
+            lambda: self._records.journal.attach(name, kind, data, nanoseconds), name, False
         )
 
     def close(self) -> None:
@@ -242,80 +203,23 @@ class LogWriter:
             return False
         return True
 
+    def _write(self, event: Event) -> None:
+        self._records.write(event)
+        if isinstance(event, FORCED):
+            with self._wake:
+                self._disk.wanted = True
+                self._wake.notify()
+
+    def _retire(self, journal: Journal) -> None:
+        with self._wake:
+            self._disk.old.append(journal)
+            self._wake.notify()
+
     def _fail(self, error: OSError) -> None:
         self.failure = (
             f"The log {self.path} can't be written any more ({error.strerror}); what happened before"
             " is in it. Make room on the disk."
         )
-
-    def _write(self, event: Event) -> None:
-        event = self._settings.privacy.of_event(event)
-        nanoseconds = max(int(event.time * 1e9), 0)
-        value = {name: getattr(event, name) for name in names_of(type(event))}
-        self._turn_over(nanoseconds)
-        if isinstance(event, Stepped):  # In most steps nothing has changed.
-            value = {name: x for name, x in value.items() if x not in _UNCHANGED}
-        else:
-            value["id"], value["causes"] = self._tracer.take(event)
-            self.count += 1
-        data = _encode(value).encode("utf-8", "backslashreplace")
-        journal = self._journal
-        channel = journal.channel(event.topic) or self._add_channel(journal, event)
-        records = journal.message(channel, self.count, nanoseconds, data)
-        if event.text:
-            said = rosout.log_message(event, nanoseconds)
-            records += journal.message(
-                journal.channel(rosout.TOPIC) or 0, self.count, nanoseconds, said
-            )
-        journal.append(records)
-        if isinstance(event, FORCED):
-            self._disk.wanted = True
-            with self._wake:
-                self._wake.notify()
-
-    def _write_raw(self, topic: str, kind: RawKind, time: float, data: bytes) -> None:
-        nanoseconds = max(int(time * 1e9), 0)
-        self._turn_over(nanoseconds)
-        journal = self._journal
-        channel = journal.channel(topic) or journal.add_channel(
-            topic, kind.message_encoding, kind.name, kind.encoding, kind.definition.encode()
-        )
-        journal.append(journal.message(channel, self.count, nanoseconds, data))
-
-    @staticmethod
-    def _add_channel(journal: Journal, event: Event) -> int:
-        schema = schema_of(type(event))
-        text = json.dumps(schema).encode()
-        return journal.add_channel(event.topic, "json", schema["title"], "jsonschema", text)
-
-    def _turn_over(self, nanoseconds: int) -> None:
-        """Goes on in another file where the day is over, or the file is long enough."""
-        if nanoseconds < self._until and self._journal.size < self._settings.part_bytes:
-            return
-        first, self._until = not self._until, _midnight_after(nanoseconds)
-        if first:
-            return
-        self._part += 1
-        before, self._journal = self._journal, self._begin(part_path(self.path, self._part))
-        self._disk.old.append(before)
-        with self._wake:
-            self._wake.notify()
-
-    def _begin(self, path: Path) -> Journal:
-        journal = Journal(path)
-        about = {"version": __version__, "schema": SCHEMA, "part": str(self._part)}
-        about["first_event"] = str(self.count + 1)
-        if self._part > 1:
-            about["follows"] = part_path(self.path, self._part - 1).name
-        if self._settings.privacy is not KEEP_ALL:
-            about["left_out"] = self._settings.privacy.words
-        journal.metadata("polaris", about)
-        for name, text in self._attachments.items():
-            kind = "application/json" if name.endswith(".json") else "text/plain"
-            journal.attach(name, kind, text.encode())
-        definition = rosout.DEFINITION.encode()
-        journal.add_channel(rosout.TOPIC, "cdr", rosout.TYPE, "ros2msg", definition)
-        return journal
 
     # In the log's own thread
 
@@ -332,13 +236,13 @@ class LogWriter:
             while disk.old:
                 self._end(disk.old.pop(0))
             if disk.closing and not self._backlog:
-                self._end(self._journal)
+                self._end(self._records.journal)
                 return
 
     def _force(self) -> None:
         self._disk.since = time.monotonic()
         try:
-            self._journal.force()
+            self._records.journal.force()
         except OSError as error:
             if not self._closed:
                 self._fail(error)
@@ -355,7 +259,7 @@ class LogWriter:
                 dropped, self._dropped = self._dropped, Counter()
                 words = ", ".join(f"{n} of {topic}" for topic, n in sorted(dropped.items()))
                 self.lost = f"The disk was too slow for a while; missing in the log: {words}."
-                missing = Failed(time=time.time(), text=self.lost, what="log")
+                missing = Failed(time=self._records.time, text=self.lost, what="log")
                 self._done(lambda: self._write(missing))
 
     def _end(self, journal: Journal) -> None:
@@ -374,26 +278,3 @@ class LogWriter:
         except (OSError, LogError) as error:
             why = error.strerror if isinstance(error, OSError) else str(error)
             self.failure = f"The log {path} is whole, but couldn't be compressed: {why}."
-
-
-def _midnight_after(nanoseconds: int) -> int:
-    """When the day of a time is over, where this computer is, in nanoseconds since the epoch."""
-    day = time.localtime(nanoseconds // 10**9)
-    return int(time.mktime((*day[:2], day.tm_mday + 1, 0, 0, 0, 0, 0, -1))) * 10**9
-
-
-def attachments_of(
-    program: Mapping[str, Any],
-    domain: str,
-    world: str,
-    settings: Mapping[str, Any] | None = None,
-) -> dict[str, str]:
-    """The attachments that make a log explain itself: program, domain, world and settings as text."""
-    texts = {
-        "program.polaris.json": json.dumps(program, indent=2),
-        "domain.pddl": domain,
-        "world.yaml": world,
-    }
-    if settings is not None:
-        texts["settings.json"] = json.dumps(settings, indent=2)
-    return texts

@@ -202,7 +202,7 @@ def test_a_full_disk_is_said_once_and_loses_nothing_before_it(
     def full(_: bytes) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(log._journal, "append", full)
+    monkeypatch.setattr(log._records.journal, "append", full)
     assert not log.write(EXAMPLE[1])
     assert "No space left on device" in log.failure
     assert not log.write(EXAMPLE[2])

@@ -6,6 +6,7 @@ import json
 import queue
 import subprocess
 import threading
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,15 @@ from jsonschema import Draft202012Validator
 from polaris_nl.automaton.automaton import Automaton
 from polaris_nl.automaton.edits import RenameCheckpoint
 from polaris_nl.automaton.program import program_json, read_program
-from polaris_nl.execution.events import Edited, Event, Failed, Heard, Planned, Understood
+from polaris_nl.execution.events import (
+    Edited,
+    Event,
+    Failed,
+    Heard,
+    Interpreted,
+    Planned,
+    Understood,
+)
 from polaris_nl.model.errors import EditError, PlanningError
 from polaris_nl.model.world import World
 from polaris_nl.planning import search
@@ -85,13 +94,15 @@ def test_without_waiting_the_plan_is_pending_and_comes_later(
 def test_everything_is_reported_as_events_in_order(session: Watched) -> None:
     session.say(CUP)
     assert session.kinds() == ["Heard", "Interpreted", "Edited", "Planned", "Understood"]
-    heard, edited, planned, understood = session.events
+    heard, interpreted, edited, planned, understood = session.events
     assert isinstance(heard, Heard)
+    assert isinstance(interpreted, Interpreted)
     assert isinstance(edited, Edited)
     assert isinstance(planned, Planned)
     assert isinstance(understood, Understood)
     assert {e.time for e in session.events} == {12.5}
-    assert heard.utterance == understood.utterance == CUP
+    assert heard.utterance == interpreted.utterance == understood.utterance == CUP
+    assert interpreted.readings[0]["text"]
     assert edited.program == program_json(session.program)
     assert (edited.revision, planned.revision, planned.status) == (1, 1, "ok")
     assert "program" not in understood.interpretation
@@ -607,7 +618,8 @@ def test_the_json_tells_the_plans_status(session: Watched) -> None:
 def children() -> set[str]:
     found: set[str] = set()
     for task in Path("/proc/self/task").iterdir():
-        found.update((task / "children").read_text().split())
+        with suppress(FileNotFoundError):  # A thread that has just ended.
+            found.update((task / "children").read_text().split())
     return found
 
 
