@@ -1,150 +1,52 @@
-"""One branch of a plan as a timeline: conditionals, actions and checkpoints in a row, left to right.
-
-    [go to the hall]─▸[tell the resident ...]─▸[● alerted]─▸[◇ 1/2 lunch is acknowledged]─▸ ...
-
-A row that is full goes on in the next one.
-"""
+"""A run drawn over time: a row for each span, with a bar where it was."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Literal as OneOf
+from collections.abc import Sequence
 
-from polaris_nl.automaton.automaton import Automaton, Transition
-from polaris_nl.model.state import State
-from polaris_nl.model.wording import Wording
-from polaris_nl.planning.result import BranchingPlan
-from polaris_nl.render.glyphs import Glyphs, cells
-from polaris_nl.render.layout import Row, cut
-from polaris_nl.render.program import first_numbers
+from polaris_nl.logs.spans import Span
+from polaris_nl.render.glyphs import ASCII, Glyphs
+from polaris_nl.render.layout import Row, Tone, cut
 
-LONGEST = 38
-"""Columns that the text of a stop may take."""
+_STEPS = (1, 2, 5, 10, 20, 30, 60, 120, 300, 600, 1200, 1800, 3600, 7200, 14400)
+"""Seconds between marks on the scale."""
+_INDENT = {"segment": 0, "action": 2, "wait": 0, "deviation": 2, "pause": 2}
+_BARS = {"segment": "━", "action": "─", "wait": "┄", "deviation": "!", "pause": "┄"}
+_PLAIN = {"segment": "=", "action": "-", "wait": ".", "deviation": "!", "pause": "."}
 
 
-@dataclass(frozen=True)
-class Stop:
-    """One place on a branch.
-
-    Attributes:
-        text: what is said of it.
-        checkpoint: the checkpoint that its segment ends at.
-        number: the action's number in the plan's outline; None for other kinds.
-        at: the action's place in its segment, from 0; 0 for other kinds.
-        before, after: the states around it, None where it has no plan.
-        ways: the checkpoints of all ways that part here; for a conditional.
-    """
-
-    kind: OneOf["condition", "action", "checkpoint"]
-    text: str
-    checkpoint: str
-    number: int | None = None
-    at: int = 0
-    before: State | None = None
-    after: State | None = None
-    ways: tuple[str, ...] = ()
-
-
-def branch_stops(
-    automaton: Automaton, plan: BranchingPlan, leaf: str, wording: Wording
-) -> tuple[Stop, ...]:
-    """The stops from the start to a checkpoint; one without a plan ends the row with its checkpoint."""
-    numbers = first_numbers(plan)
-    stops: list[Stop] = []
-    for way in automaton.path(leaf):
-        stops.extend(_segment_stops(automaton, plan, way, wording, numbers))
-        if way.target not in plan.segments:
-            break
-    return tuple(stops)
-
-
-def _segment_stops(
-    automaton: Automaton,
-    plan: BranchingPlan,
-    way: Transition,
-    wording: Wording,
-    numbers: Mapping[str, int],
-) -> Iterator[Stop]:
-    target, segment = way.target, plan.segments.get(way.target)
-    siblings = tuple(t.target for t in sorted_ways(automaton, way.source))
-    before = segment.before if segment else None
-    if way.when or len(siblings) > 1:
-        text = f"once {wording.events(way.when)}" if way.when else "otherwise"
-        came = plan.segments.get(way.source)
-        yield Stop(
-            "condition", text, target, None, 0, came.after if came else None, before, siblings
-        )
-    if segment is not None:
-        states = [segment.before, *(step.state for step in segment.steps)]
-        for at, action in enumerate(segment.actions):
-            known = at + 1 < len(states)
-            yield Stop(
-                "action",
-                wording.action(action),
-                target,
-                numbers[target] + at,
-                at,
-                states[at] if known else None,
-                states[at + 1] if known else None,
-            )
-    end = segment.after if segment else None
-    yield Stop("checkpoint", automaton.checkpoints[target].name, target, None, 0, end, end)
-
-
-def sorted_ways(automaton: Automaton, source: str) -> list[Transition]:
-    """The transitions from a checkpoint, the else last, as they are drawn everywhere."""
-    return sorted(automaton.outgoing(source), key=lambda t: not t.when)
-
-
-def timeline_rows(
-    stops: Sequence[Stop],
-    picked: int | None,
-    glyphs: Glyphs,
-    width: int,
-    planned: frozenset[str],
-    done: int = 0,
-) -> list[Row]:
-    """The stops as rows of boxes; the picked one has other brackets and is picked out.
+def timeline_rows(spans: Sequence[Span], glyphs: Glyphs, width: int) -> list[Row]:
+    """The timeline, its scale first.
 
     Args:
-        stops: of one branch.
-        picked: the place of a stop, or None.
+        spans: in the order in which they began.
         glyphs: the signs to draw with.
-        width: columns in a row.
-        planned: the checkpoints that have a plan.
-        done: so many stops are behind a robot that is on its way; they get a tick.
+        width: characters in a row, 40 or more.
     """
-    rows: list[Row] = []
-    line, span, checkpoint = "", None, None
-    longest = min(LONGEST, max(width - 8, 4))
-    for number, stop in enumerate(stops):
-        here = number == picked
-        left, right = (glyphs.picked[0], glyphs.picked[1]) if here else ("[", "]")
-        sign = f"{glyphs.good} " if number < done else ""
-        box = f"{left}{sign}{cut(_label(stop, glyphs, planned), longest, glyphs.more)}{right}"
-        joint = glyphs.step if line else ""
-        last = number == len(stops) - 1
-        room = width - (0 if last else cells(glyphs.step))
-        if line and cells(line + joint + box) > room:
-            rows.append(Row(line + glyphs.step, "", checkpoint, None, span))
-            line, span, joint = "  ", None, ""
-        start = len(line) + len(joint)
-        line += joint + box
-        if here:
-            span = (start, start + len(box))
-        checkpoint = stop.checkpoint
-    if line:
-        rows.append(Row(line, "", checkpoint, None, span))
+    if not spans:
+        return [Row("Nothing was done.", "faint")]
+    names = min(width // 2 - 6, max(len(s.label) + _INDENT[s.kind] for s in spans))
+    room = width - names - 11
+    end = max(max(s.end for s in spans), 0.001)
+    bars = _PLAIN if glyphs is ASCII else _BARS
+    rows = [Row(" " * (names + 10) + _scale(end, room), "faint")]
+    for span in spans:
+        label = cut(" " * _INDENT[span.kind] + span.label, names, glyphs.more)
+        first = min(int(span.start / end * room), room - 1)
+        length = max(1, round(span.end / end * room) - first)
+        bar = " " * first + bars[span.kind] * min(length, room - first)
+        sign = " " if span.done else glyphs.bad
+        tone: Tone = "strong" if span.kind == "segment" else "" if span.done else "bad"
+        rows.append(Row(f"{label:<{names}} {span.seconds:5.1f} s{sign} {bar}", tone))
     return rows
 
 
-def _label(stop: Stop, glyphs: Glyphs, planned: frozenset[str]) -> str:
-    if stop.kind == "condition":
-        several = len(stop.ways) > 1
-        which = f"{stop.ways.index(stop.checkpoint) + 1}/{len(stop.ways)} " if several else ""
-        return f"{glyphs.wait} {which}{stop.text}"
-    if stop.kind == "checkpoint":
-        sign = glyphs.checkpoint if stop.checkpoint in planned else glyphs.bad
-        return f"{sign} {stop.text}"
-    return stop.text
+def _scale(end: float, room: int) -> str:
+    """Marks in seconds, as many as there is room for."""
+    step = next((s for s in _STEPS if end / s * 8 <= room), _STEPS[-1])
+    row = [" "] * (room + 8)
+    for mark in range(0, int(end) + 1, step):
+        at, text = int(mark / end * room), f"{mark} s"
+        if at + len(text) <= room:
+            row[at : at + len(text)] = text
+    return "".join(row).rstrip()
