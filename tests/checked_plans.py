@@ -16,7 +16,7 @@ from typing import Any
 from polaris_nl.automaton.automaton import Automaton
 from polaris_nl.model.domain import Action
 from polaris_nl.model.errors import PlanningError
-from polaris_nl.model.formula import Formula
+from polaris_nl.model.formula import Formula, Literal
 from polaris_nl.model.state import State
 from polaris_nl.model.world import World
 from polaris_nl.planning import search as searching
@@ -30,6 +30,8 @@ from polaris_nl.planning.translate import translate
 from polaris_nl.planning.up_model import is_valid
 
 BLIND_S = 1.0
+MOST_DENIED = 3
+"""Negative goals of which the translator, which counts combinations of what may hold instead, can tell."""
 _search = searching.search  # As it is before any test puts something else in its place.
 
 
@@ -101,6 +103,8 @@ class CheckedPlans:
         return []
 
     def _least(self, made: Made, goals: list[Formula]) -> int | None:
+        if sum(isinstance(g, Literal) and not g.positive for g in goals) > MOST_DENIED:
+            return None
         text = problem_text(made.world, made.state, goals)
         try:
             task = translate(domain_text(made.world.domain), text, within(BLIND_S, never))
