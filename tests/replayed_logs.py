@@ -36,13 +36,13 @@ class ReplayedLogs:
     def faults(self) -> list[str]:
         """What replays did otherwise."""
         found = []
-        for path in self._closed:
+        closed, self._closed[:] = list(self._closed), []
+        for path in closed:
             if path.exists() and _has_run(path):
                 for one in replayed(path):
                     self.runs += 1
                     if one.difference is not None:
                         found.append(f"{path.name}: {one.difference}")
-        self._closed.clear()
         return found
 
 

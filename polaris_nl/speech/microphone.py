@@ -43,7 +43,7 @@ class Microphone:
             SpeechError: it can't be used from the start.
         """
         library = _library()
-        first, troubled = True, False
+        first, looked, troubled = True, False, False
         while True:
             try:
                 for block in self._blocks(library):
@@ -53,6 +53,10 @@ class Microphone:
                     first = False
                     yield block
             except (library.PortAudioError, ValueError) as error:
+                if first and not looked:
+                    looked = True
+                    _look_again(library)
+                    continue
                 if first:
                     raise SpeechError(
                         f"{self._called} can't be used. Microphones here: {_known()}. A recording can be given "
