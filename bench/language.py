@@ -30,12 +30,12 @@ def rows() -> Iterator[Row]:
         language = language_of(case.world)
         for text in () if case.held_out else case.wordings:
             language.interpret(text, Automaton())
-            ours += timed(lambda s=text, u=language: u.interpret(s, Automaton()), 1)  # type: ignore[misc]
-            plain += timed(lambda s=text: tokens(s), 1)  # type: ignore[misc]
+            ours += timed(lambda s=text, u=language: u.interpret(s, Automaton()), 1)
+            plain += timed(lambda s=text: tokens(s), 1)
     yield Row("typed utterance -> interpretation", "p95 <= 15", ours, plain, "spaCy's tokens alone")
     for size in SIZES:
         text = " ".join((LONG * size).split()[:size])
-        times = timed(lambda s=text: language_of("care-home").interpret(s, Automaton()), 5)  # type: ignore[misc]
+        times = timed(lambda s=text: language_of("care-home").interpret(s, Automaton()), 5)
         yield Row(f"an utterance of {size} words", "", times)
     _python(START)
     yield Row(

@@ -98,7 +98,7 @@ def _plainly(path: Path) -> list[float]:
             nanoseconds = int(event.time * 1e9)
             data = json.dumps({**value, **more}).encode()
             writer.add_message(channel, nanoseconds, data, nanoseconds)
-            writer.flush()  # type: ignore[no-untyped-call]
+            writer.flush()
             found.append((time.perf_counter() - started) * 1e6)
     return found
 
@@ -159,7 +159,7 @@ def _copied(source: Path, target: Path) -> None:
             writer.add_message(
                 channel, found.log_time, found.data, found.publish_time, found.sequence
             )
-        writer.finish()  # type: ignore[no-untyped-call]
+        writer.finish()
 
 
 def _reading(folder: Path) -> Iterator[Row]:

@@ -65,7 +65,7 @@ class Measured:
         found = []
         for program in programs:
             plans: list[BranchingPlan] = []
-            found += timed(lambda p=program, k=plans: k.append(self.plan(p)), 1)  # type: ignore[misc]
+            found += timed(lambda p=program, k=plans: k.append(self.plan(p)), 1)
             self.keep(plans[0])
         return found
 

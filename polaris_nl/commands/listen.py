@@ -27,8 +27,9 @@ from polaris_nl.speech.audio import level
 from polaris_nl.speech.ears import EarMaker, gaps_in_words
 from polaris_nl.speech.microphone import microphones
 from polaris_nl.speech.modes import Attention, State
-from polaris_nl.speech.sources import Source, Trouble, source_for
+from polaris_nl.speech.sources import Source, source_for
 from polaris_nl.speech.speaker import SoundPlayer, Speaker
+from polaris_nl.speech.trouble import Trouble
 from polaris_nl.speech.voices import find_voice
 from polaris_nl.speech.wake import WORDS, MicroWakeWord
 

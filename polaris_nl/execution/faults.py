@@ -114,4 +114,4 @@ class Troubles:
     def health(self) -> HealthKind:
         """What is the matter with the robot, `ready` where nothing is."""
         found = self.lasting(*HEALTH_FAULTS)
-        return found[0].kind if found else "ready"  # type: ignore[return-value]
+        return found[0].kind if found else "ready"  # type: ignore[return-value] # kinds of health are faults, too

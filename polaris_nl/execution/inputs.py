@@ -71,7 +71,7 @@ class Inverse:
         before = self._before
         health = before.health
         if record.health is not None:
-            health = Health(record.health, record.health_text or "")  # type: ignore[arg-type]
+            health = Health(record.health, record.health_text or "")  # type: ignore[arg-type] # as it was logged
         moving = {text: value for value, text in _MOVING.items()}
         self._before = Observation(
             before.state.change(_literals(record.removed), _literals(record.added)),

@@ -143,4 +143,4 @@ def _bare(event: Event) -> Event:
     words = {"text": "", "reason": "", "seconds": 0.0}
     if not isinstance(event, RunEnded):
         del words["seconds"]
-    return replace(event, **{name: x for name, x in words.items() if hasattr(event, name)})  # type: ignore[arg-type]
+    return replace(event, **{name: x for name, x in words.items() if hasattr(event, name)})  # type: ignore[arg-type] # fields by their names

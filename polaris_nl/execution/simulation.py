@@ -273,7 +273,7 @@ class SimulatedRobot:
         self._task = None
 
     def _report(self, goal: int, kind: str, reason: str = "") -> None:
-        self._reports.append(Report(goal, kind, reason))  # type: ignore[arg-type]
+        self._reports.append(Report(goal, kind, reason))  # type: ignore[arg-type] # kind is one of the kinds
 
     # The world
 

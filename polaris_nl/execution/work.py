@@ -31,7 +31,7 @@ class Work:
         """Changes the phase."""
         before = self.state.phase
         again: dict[str, object] = {"holding_since": None, "held": "", "request": None}
-        self.state = replace(self.state, phase=phase, since=self.now, **(again | changes))  # type: ignore[arg-type]
+        self.state = replace(self.state, phase=phase, since=self.now, **(again | changes))  # type: ignore[arg-type] # fields by their names
         if before != phase:
             self.events.append(
                 StateChanged(time=self.now, before=before, after=phase, reason=reason)
@@ -39,7 +39,7 @@ class Work:
 
     def note(self, **changes: object) -> None:
         """Changes what is remembered, in the same phase."""
-        self.state = replace(self.state, **changes)  # type: ignore[arg-type]
+        self.state = replace(self.state, **changes)  # type: ignore[arg-type] # fields by their names
 
     def held_for(self, what: str, seconds: float) -> bool:
         """Whether something has been perceived for some time; asked at each step in which it is."""

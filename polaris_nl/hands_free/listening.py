@@ -21,8 +21,9 @@ from polaris_nl.speech.ears import Ears
 from polaris_nl.speech.hearer import Heard, Hearer, Quick, Started
 from polaris_nl.speech.hearing import Utterance, near, utterance
 from polaris_nl.speech.modes import Attention, Cue, Happening, State, cue
-from polaris_nl.speech.sources import Source, Trouble
+from polaris_nl.speech.sources import Source
 from polaris_nl.speech.speaker import Speaker
+from polaris_nl.speech.trouble import Trouble
 from polaris_nl.speech.voices import chime
 from polaris_nl.speech.wake import WakeWord
 

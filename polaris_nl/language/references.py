@@ -318,7 +318,7 @@ class _Search:
         asked = frozenset(
             said
             for form in forms
-            for base in self.verbs.bases(word, form)  # type: ignore[arg-type]
+            for base in self.verbs.bases(word, form)  # type: ignore[arg-type] # form is one of the forms
             for said in self.said.get(base, ())
         )
         if not asked:

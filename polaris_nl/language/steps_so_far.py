@@ -183,4 +183,4 @@ class StepsSoFar:
         """
         assert item.clause is not None
         found, self.scope = self.resolver.literals(item.clause, self.scope, condition)
-        return found  # type: ignore[return-value]
+        return found  # type: ignore[return-value] # none is None here

@@ -70,7 +70,7 @@ def decoded(opcode: int, body: bytes) -> McapRecord | None:
     kind = _KINDS.get(opcode)
     if kind is None:
         return None
-    found: McapRecord = kind.read(ReadDataStream(io.BytesIO(body)))  # type: ignore[attr-defined]
+    found: McapRecord = kind.read(ReadDataStream(io.BytesIO(body)))  # type: ignore[attr-defined] # each kind has its own read
     return found
 
 

@@ -27,7 +27,10 @@ def read_small_text(path: Path, what: str, error: type[FormatError]) -> str:
             article = "An" if what[:1] in "AEIOU" else "A"
             raise error(f"{article} {what} of more than {MAX_BYTES // 10**6} MB is refused.", path)
         return path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as failed:
-        text = isinstance(failed, UnicodeDecodeError)
-        reason = "it is not UTF-8 text" if text else failed.strerror  # type: ignore[union-attr]
+    except UnicodeDecodeError as failed:
+        reason = "it is not UTF-8 text"
         raise FileError(f"Can't read the {what} {path}: {reason}. Check the path.") from failed
+    except OSError as failed:
+        raise FileError(
+            f"Can't read the {what} {path}: {failed.strerror}. Check the path."
+        ) from failed

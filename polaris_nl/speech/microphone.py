@@ -9,7 +9,7 @@ from typing import Any
 
 from polaris_nl.model.errors import SpeechError
 from polaris_nl.speech.audio import BLOCK, INSTALL, RATE
-from polaris_nl.speech.sources import Trouble
+from polaris_nl.speech.trouble import Trouble
 
 FIRST_S = 4.0
 """How long the first block may take: opening a device takes up to two seconds."""

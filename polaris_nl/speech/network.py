@@ -14,7 +14,7 @@ from urllib.parse import urlsplit
 
 from polaris_nl.model.errors import SpeechError, UsageError
 from polaris_nl.speech.audio import INSTALL, Converter
-from polaris_nl.speech.sources import Trouble
+from polaris_nl.speech.trouble import Trouble
 
 PORT = 10_700
 AGAIN_S = 1.0

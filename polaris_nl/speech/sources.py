@@ -10,21 +10,9 @@ from typing import Protocol
 
 from polaris_nl.model.errors import SpeechError
 from polaris_nl.speech.audio import BLOCK, file_blocks
+from polaris_nl.speech.trouble import Trouble
 
 RECORDINGS = (".wav", ".flac", ".ogg")
-
-
-@dataclass(frozen=True, slots=True)
-class Trouble:
-    """Something is wrong with the source, or right again.
-
-    Attributes:
-        text: one sentence with a way out.
-        over: whether sound comes again.
-    """
-
-    text: str
-    over: bool = False
 
 
 class Source(Protocol):

@@ -144,7 +144,7 @@ def test_drawings_escape_what_they_cannot_take(draw: object) -> None:
         .with_transition(Transition("t1", START, "end"))
         .with_transition(Transition("t2", "end", "c2", on="failure"))
     )
-    text = draw(automaton, PlainWording(world))  # type: ignore[operator]
+    text = draw(automaton, PlainWording(world))
     assert "\x1b" not in text
     lines = text.splitlines()
     if draw is mermaid:

@@ -43,7 +43,7 @@ class Case:
         return self.planner.world
 
     def run_plan(self, **settings: float | None) -> RunPlan:
-        patience = replace(RunSettings(), **settings)  # type: ignore[arg-type]
+        patience = replace(RunSettings(), **settings)
         return RunPlan(self.automaton, self.plan, self.world, self.planner.wording, patience)
 
 
@@ -52,7 +52,7 @@ class SpiedRobot(SimulatedRobot):
 
     def __init__(self, case: Case, **kwargs: object) -> None:
         planner = case.planner
-        super().__init__(planner.world, planner.mutexes, planner.segment, start=T0, **kwargs)  # type: ignore[arg-type]
+        super().__init__(planner.world, planner.mutexes, planner.segment, start=T0, **kwargs)
         self.commanded: list[tuple[float, Command]] = []
 
     def command(self, command: Command) -> None:

@@ -40,7 +40,7 @@ def at_moments(**moments: float) -> Commands:
         due = [kind for kind, at in left.items() if seconds >= at - 1e-6]
         for kind in due:
             del left[kind]
-        return [HumanCommand(kind) for kind in due]  # type: ignore[arg-type]
+        return [HumanCommand(kind) for kind in due]
 
     return commands
 

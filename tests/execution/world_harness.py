@@ -92,7 +92,7 @@ class Stage:
                 yield what
             elif what == DISK_FULL:
                 assert self.log is not None
-                self.log._write = _no_space  # type: ignore[method-assign]
+                self.log._write = _no_space
             else:
                 assert what == RESTART
                 self.robot.cut_off = True
@@ -117,7 +117,7 @@ class WorldHarness:
         clock = BoundedClock(T0)
         rest = [h for h in scenario.happenings if h.cue.event is not None]
         stage = Stage(scenario, robot, clock, rest)
-        settings = replace(RunSettings(), **scenario.settings)  # type: ignore[arg-type]
+        settings = replace(RunSettings(), **scenario.settings)
         order = RunOrder(case.automaton, case.plan, case.planner, settings=settings)
         logs: list[Path] = []
         try:

@@ -95,7 +95,7 @@ class Talk:
 
     def _sink(self, event: object) -> None:
         if self.log is not None:
-            self.log.write(event)  # type: ignore[arg-type]
+            self.log.write(event)
 
     def _tell(self, text: str) -> None:
         self.face.tells(text)
@@ -113,7 +113,7 @@ class Talk:
             source, self.ears, self.conversation, self.face, attention, self.speaker,
             keep=AudioKeeper(self.log).keep if self.log is not None else None,
             started=self.runs.start,
-            **more,  # type: ignore[arg-type]
+            **more,
         )  # fmt: skip
         if now is not None:
             self.listening.now = now

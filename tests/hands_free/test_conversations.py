@@ -13,7 +13,7 @@ from polaris_nl.hands_free.weight import weigher
 from polaris_nl.logs.reader import read_log
 from polaris_nl.speech.ears import EarMaker
 from polaris_nl.speech.modes import Attention
-from polaris_nl.speech.sources import Trouble
+from polaris_nl.speech.trouble import Trouble
 from polaris_nl.speech.wake import MicroWakeWord
 from tests.hands_free.talking import Counted, Talk
 from tests.speech.speaking import Saying
@@ -138,7 +138,7 @@ def test_the_wake_word_opens_a_window_for_more(maker: EarMaker) -> None:
     said = ("go to the kitchen", "hey jarvis", "go to the office", "then go home")
     source = Counted(Saying(*said))
     with Talk("care-home", maker) as talk:
-        face = talk.hold(source, Attention("wake"), source.now, wake_word=MicroWakeWord())  # type: ignore[arg-type]
+        face = talk.hold(source, Attention("wake"), source.now, wake_word=MicroWakeWord())
         goals = [
             str(g) for c in talk.session.snapshot.automaton.checkpoints.values() for g in c.goals
         ]
@@ -151,7 +151,7 @@ def test_what_isn_t_understood_twice_is_offered_by_number(maker: EarMaker) -> No
     said = (nonsense, nonsense, "number two")
     source = Counted(Saying(*said))
     with Talk("care-home", maker) as talk:
-        face = talk.hold(source, Attention("wake", until=60), source.now)  # type: ignore[arg-type]
+        face = talk.hold(source, Attention("wake", until=60), source.now)
     assert "Did you mean one:" in face.texts[1]
     assert face.heard[2].answer is not None or "other words" in face.texts[2]
 

@@ -79,7 +79,7 @@ def test_independent_readers_open_it(tmp_path: Path) -> None:
     with AnyReader([path]) as bag:
         connections = [c for c in bag.connections if c.topic == "/rosout"]
         texts = [
-            bag.deserialize(raw, connection.msgtype).msg  # type: ignore[attr-defined]
+            bag.deserialize(raw, connection.msgtype).msg
             for connection, _, raw in bag.messages(connections=connections)
         ]
     assert texts == [e.text for e in EXAMPLE]
@@ -104,7 +104,7 @@ def test_raw_messages_stand_beside_the_events_and_survive_a_cut(tmp_path: Path) 
         with AnyReader([whole]) as bag:
             (mode,) = (c for c in bag.connections if c.topic == "/mode")
             found = [
-                (stamp, bag.deserialize(raw, mode.msgtype).data)  # type: ignore[attr-defined]
+                (stamp, bag.deserialize(raw, mode.msgtype).data)
                 for _, stamp, raw in bag.messages(connections=[mode])
             ]
         assert found == [(100_500_000_000, "hi")]

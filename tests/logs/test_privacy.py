@@ -103,7 +103,7 @@ def test_a_word_is_nowhere(afterwards: bool, tmp_path: Path) -> None:
     log = read_log(path)
     assert SECRET not in str(log.events)
     assert log.attachments["program.polaris.json"] == '{"name": "[left out]"}'
-    assert log.events[0].utterance == "bring [left out] to me"  # type: ignore[attr-defined]
+    assert log.events[0].utterance == "bring [left out] to me"
     assert not any(SECRET in text for text in kept(path))
 
 

@@ -73,7 +73,7 @@ def test_another_decision_is_found(lunch_log: Path) -> None:
     events = read_log(lunch_log).events
     at = next(n for n, e in enumerate(found.decisions) if isinstance(e, GoalSent))
     wrong = list(found.decisions)
-    wrong[at] = replace(wrong[at], action="(move home attic)")  # type: ignore[call-arg]
+    wrong[at] = replace(wrong[at], action="(move home attic)")
     difference = first_difference(events, wrong)
     assert difference is not None
     assert isinstance(difference.logged, GoalSent)
@@ -104,7 +104,7 @@ def test_what_the_executor_was_given_comes_back_as_it_was() -> None:
     for time, inputs in enumerate(steps):
         record = differences.record(float(time), inputs)
         read = event_of(record.topic, event_json(record))
-        assert inverse.inputs(read) == inputs  # type: ignore[arg-type]
+        assert inverse.inputs(read) == inputs
 
 
 def test_logs_that_cannot_be_replayed_say_why(tmp_path: Path) -> None:

@@ -134,7 +134,7 @@ def test_filters(told: Path) -> None:
     fill = found("goal=fill")
     assert len({getattr(e, "goal", 0) for e in fill}) == 1
     assert len(fill) >= 4, "what was sent, reported and confirmed"
-    assert found(f"goal={fill[0].goal}") == fill  # type: ignore[attr-defined]
+    assert found(f"goal={fill[0].goal}") == fill
     about = found("entity=tray")
     assert any(isinstance(e, Observed) for e in about)
     assert found("entity=tra") == []

@@ -191,7 +191,7 @@ def check(world: World, automaton: Automaton) -> Iterator[str]:
         state = source.after if source is not None else world.initial
         before = state.after_event(transition.when, planner.mutexes)
         goals = automaton.checkpoints[checkpoint].goals
-        shortest = everything.distance(before, goals)  # type: ignore[arg-type]
+        shortest = everything.distance(before, goals)
         segment = plan.segments.get(checkpoint)
         assert (segment is None) == (shortest is None), (checkpoint, segment)
         if segment is None:

@@ -82,7 +82,7 @@ def test_a_problem_is_told_with_the_edit_that_made_it(session: Watched) -> None:
 def test_without_waiting_the_plan_is_pending_and_comes_later(
     session: Watched, planner: Planner
 ) -> None:
-    session.planner = gated = GatedPlanner(planner)  # type: ignore[assignment, misc]
+    session.planner = gated = GatedPlanner(planner)
     answer = session.say(CUP, wait_s=0)
     assert (answer.snapshot.planning, answer.snapshot.plan) == ("planning", None)
     assert answer_json(answer, session.program)["plan"]["status"] == "pending"
@@ -259,7 +259,7 @@ def test_there_is_no_yes_to_a_plan_that_is_not_there_yet(
     session: Watched, planner: Planner
 ) -> None:
     session.say(CUP)
-    session.planner = gated = GatedPlanner(planner)  # type: ignore[assignment, misc]
+    session.planner = gated = GatedPlanner(planner)
     add(session, "(robot-at home)")
     # The plan that the snapshot still has is the older program's.
     assert session.snapshot.plan is not None
@@ -439,7 +439,7 @@ def test_a_subscriber_may_edit_and_all_hear_it_in_order(session: Watched) -> Non
 def test_edits_quicker_than_planning_cancel_the_older_work(
     session: Watched, planner: Planner
 ) -> None:
-    session.planner = gated = GatedPlanner(planner)  # type: ignore[assignment, misc]
+    session.planner = gated = GatedPlanner(planner)
     add(session, TABLE)
     assert gated.entered.acquire(timeout=LIMIT_S)
     for text in ("(robot-at home)", "(robot-at hall)", "(at tray desk)"):
@@ -458,7 +458,7 @@ def test_edits_quicker_than_planning_cancel_the_older_work(
 def test_a_plan_that_is_made_just_too_late_is_thrown_away(
     session: Watched, planner: Planner, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    session.planner = gated = GatedPlanner(planner)  # type: ignore[assignment, misc]
+    session.planner = gated = GatedPlanner(planner)
     # The edit falls between the planning thread's look at the time and its publishing.
     monkeypatch.setattr(session._replanner, "_stale", lambda revision: False)
     add(session, TABLE)
@@ -501,7 +501,7 @@ def test_a_planner_that_fails_is_told_and_the_next_edit_is_planned(
         def drafts(self, *_: object) -> None:
             raise error
 
-    session.planner = Broken()  # type: ignore[assignment, misc]
+    session.planner = Broken()
     answer = session.say(CUP)
     assert answer.snapshot.planning == "failed"
     assert str(error) in answer.snapshot.failure
@@ -510,7 +510,7 @@ def test_a_planner_that_fails_is_told_and_the_next_edit_is_planned(
     assert answer_json(answer, session.program)["plan"]["status"] == "pending"
     assert answer.snapshot.failure in session.say("run").say
     assert not session.say("yes").confirmed
-    session.planner = planner  # type: ignore[misc]
+    session.planner = planner
     assert session.say(HOME).snapshot.planning == "planned"
 
 

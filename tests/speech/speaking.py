@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from functools import lru_cache
 
 from polaris_nl.speech.audio import BLOCK, RATE, Converter
-from polaris_nl.speech.sources import Trouble
+from polaris_nl.speech.trouble import Trouble
 from polaris_nl.speech.voices import HibariVoice
 
 SILENCE = b"\0\0" * BLOCK

@@ -14,7 +14,7 @@ from polaris_nl.speech.audio import level
 from polaris_nl.speech.ears import EarMaker
 from polaris_nl.speech.microphone import Microphone, microphones
 from polaris_nl.speech.recogniser import pieces
-from polaris_nl.speech.sources import Trouble
+from polaris_nl.speech.trouble import Trouble
 from tests.speech.sound_card import SoundCard, sound_card
 from tests.speech.speaking import SILENCE, spoken
 
@@ -48,7 +48,7 @@ def test_what_is_said_into_the_microphone_is_heard(card: SoundCard) -> None:
     player.start()
     (heard,) = pieces(until_quiet(sound), SileroActivity(), ears.phrased, ears.free)
     player.join()
-    sound.close()  # type: ignore[attr-defined]
+    sound.close()
     assert heard.alternatives[0] == "go home"
     assert "pulse" in microphones()
 
@@ -72,7 +72,7 @@ def test_an_unplugged_microphone_is_said_at_once_and_comes_back(card: SoundCard)
     )
     assert next(sound) == Trouble("The microphone pulse is back.", over=True)
     assert isinstance(next(sound), bytes)
-    sound.close()  # type: ignore[attr-defined]
+    sound.close()
 
 
 def test_a_microphone_that_isn_t_there_is_named_with_those_that_are() -> None:

@@ -16,7 +16,8 @@ import pytest
 from polaris_nl.model.errors import SpeechError, UsageError
 from polaris_nl.speech.audio import BLOCK, RATE
 from polaris_nl.speech.network import NetworkMicrophone, address
-from polaris_nl.speech.sources import Pipe, Trouble, source_for
+from polaris_nl.speech.sources import Pipe, source_for
+from polaris_nl.speech.trouble import Trouble
 
 BLOCKS = [bytes([n, 0]) * BLOCK for n in range(1, 6)]
 

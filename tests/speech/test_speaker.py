@@ -126,7 +126,7 @@ def test_chimes_are_short_and_quieter_than_words() -> None:
     import array
 
     for sign in ("listening", "waiting", "asleep"):
-        sound = chime(sign)  # type: ignore[arg-type]
+        sound = chime(sign)
         assert 0.1 < sound.seconds < 0.3
         assert 0 < max(array.array("h", sound.samples)) < 32767 * 0.11
     assert chime("").samples == b""

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from polaris_nl.speech.network import NetworkMicrophone
-from polaris_nl.speech.sources import Trouble
+from polaris_nl.speech.trouble import Trouble
 from tests.speech.test_sources import BLOCKS, chunk, server
 
 PATIENCE_S = 30.0

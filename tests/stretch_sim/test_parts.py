@@ -234,7 +234,7 @@ class Story:
     """A kinematic simulation in which time is let pass."""
 
     def __init__(self, world: str, people: tuple[str, ...] | None = (), **options: float) -> None:
-        self.simulator = Simulator(load_world(world), 0.0, Options(people, **options))  # type: ignore[arg-type]
+        self.simulator = Simulator(load_world(world), 0.0, Options(people, **options))
         self.now = 0.0
         self.said: list[Saying] = []
         self.deeds: list[str] = []

@@ -193,10 +193,10 @@ class GatedPlanner:
 
     def __init__(self, planner: object) -> None:
         self._planner = planner
-        self.mutexes = planner.mutexes  # type: ignore[attr-defined]
+        self.mutexes = planner.mutexes
         self.gate = threading.Event()
         self.gate.set()
 
     def drafts(self, automaton: Automaton, stale: Callable[[], bool]) -> Iterator[Draft]:
         assert self.gate.wait(LIMIT_S)
-        yield from self._planner.drafts(automaton, stale)  # type: ignore[attr-defined]
+        yield from self._planner.drafts(automaton, stale)

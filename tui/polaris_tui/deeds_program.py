@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from polaris_nl.planning.result import Problem, Warning
 from polaris_nl.render.explanation import offers
 from polaris_tui import authoring
 from polaris_tui.deeds_run import Going
 from polaris_tui.menus import Ask, Change, Menu, Option, Perform
-
-if TYPE_CHECKING:
-    pass
 
 
 class Editing(Going):

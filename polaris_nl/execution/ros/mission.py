@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Coroutine, Sequence
+from functools import partial
 from typing import Any
 
 from polaris_nl.execution.backend import Report, ReportKind, SendGoal
@@ -86,7 +87,7 @@ class Mission:
         done: Action | None = None
         while True:
             state = seen()
-            found = await think(lambda state=state: self._pursuit.next(state))  # type: ignore[misc]
+            found = await think(partial(self._pursuit.next, state))
             if isinstance(found, Lost):
                 self._end("failed", found.reason)
                 return

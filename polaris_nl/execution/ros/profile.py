@@ -7,6 +7,7 @@ from dataclasses import MISSING, dataclass, fields
 from pathlib import Path
 from typing import Any, TypeVar, get_type_hints
 
+from polaris_nl.execution.ros.primitive_kinds import PRIMITIVES
 from polaris_nl.model.errors import FormatError, RunError, did_you_mean
 from polaris_nl.model.schema import check_schema
 from polaris_nl.model.yaml_lines import Lined, read_yaml
@@ -214,7 +215,6 @@ def _ros_name(value: Lined, what: str) -> str:
 
 
 def _primitives(lined: Lined) -> dict[str, str]:
-    from polaris_nl.execution.ros.skills import PRIMITIVES
 
     found: dict[str, str] = {}
     for name, value in lined.mapping("primitives", PRIMITIVES).items():

@@ -11,6 +11,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from polaris_nl.execution.ros.primitive_kinds import PRIMITIVES
 from polaris_nl.execution.ros.profile import Profile
 from polaris_nl.model.domain import Action, Domain, Operator
 from polaris_nl.model.errors import FormatError, did_you_mean
@@ -19,22 +20,6 @@ from polaris_nl.model.yaml_lines import Lined, read_yaml
 
 SCHEMA = "polaris-skills/1"
 FILE_NAME = "skills.yaml"
-
-PLACE = ("surface", "container")
-PRIMITIVES: Mapping[str, Mapping[str, tuple[str, ...]]] = {
-    "navigate": {"to": ("region", "person", *PLACE)},
-    "reach": {"to": ("object", "person", *PLACE)},
-    "retract": {},
-    "grasp": {"object": ("object",), "at": PLACE},
-    "release": {"object": ("object",), "at": PLACE},
-    "hand-over": {"object": ("object",), "to": ("person",)},
-    "take": {"object": ("object",), "from": ("person",)},
-    "open": {"what": ("container",)},
-    "close": {"what": ("container",)},
-    "fill": {"object": ("object",), "at": ("surface",)},
-    "say": {"person": ("person",), "message": ("message",)},
-}
-"""The primitives there is code for, with their parameters and the types that these may have."""
 
 
 @dataclass(frozen=True, slots=True)

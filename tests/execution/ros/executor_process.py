@@ -33,7 +33,7 @@ def main() -> None:
             )
     for name, source, target, when in given["transitions"]:
         conditional = tuple(map(parse_formula, when))
-        automaton = automaton.with_transition(Transition(name, source, target, conditional))  # type: ignore[arg-type]
+        automaton = automaton.with_transition(Transition(name, source, target, conditional))
     with Session(load_world(given["world"])) as session:
         planner = session.planner
         plan = planner.compile(automaton)

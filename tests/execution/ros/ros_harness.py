@@ -86,7 +86,7 @@ class Stage:
                 self.driver.thaw()
             elif what == DISK_FULL:
                 assert self.log is not None
-                self.log._write = _no_space  # type: ignore[method-assign]
+                self.log._write = _no_space
             else:
                 yield what
 
@@ -155,7 +155,7 @@ class RosHarness:
             driver.close()
 
     def _in_process(self, scenario: Scenario, case: Case, folder: Path, stage: Stage) -> Ran:
-        settings = replace(RunSettings(), **scenario.settings)  # type: ignore[arg-type]
+        settings = replace(RunSettings(), **scenario.settings)
         log = folder / "run.mcap"
         order = RunOrder(case.automaton, case.plan, case.planner, settings=settings, log=log)
         connect = connection(profile_of(scenario), order, stage.clock)
@@ -169,7 +169,7 @@ class RosHarness:
                 stage.commanded.append((stage.clock.now(), order))
                 command(order)
 
-            robot.command = keep  # type: ignore[method-assign]
+            robot.command = keep
             return robot
 
         try:

@@ -9,8 +9,9 @@ from pathlib import Path
 import pytest
 
 from polaris_nl.cli import main
+from polaris_nl.execution.ros.primitive_kinds import PRIMITIVES
 from polaris_nl.execution.ros.profile import FOLDER, profile_for, profile_names, read_profile
-from polaris_nl.execution.ros.skills import PRIMITIVES, read_skills, skills_for
+from polaris_nl.execution.ros.skills import read_skills, skills_for
 from polaris_nl.model.data import shipped_domains
 from polaris_nl.model.domain import Action
 from polaris_nl.model.errors import FormatError, RunError

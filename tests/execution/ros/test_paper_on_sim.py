@@ -82,7 +82,7 @@ def on_sim(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Run]:
             events.append(event)
             react(event, onlooker)
 
-        patience = replace(RunSettings(), **settings)  # type: ignore[arg-type]
+        patience = replace(RunSettings(), **settings)
         log = tmp_path / "run.mcap"
         order = RunOrder(case.automaton, case.plan, case.planner, log=log, settings=patience)
         report = run_on_robot(profile_for("stretch-sim"), order, confirmed=True, show=show)
@@ -106,7 +106,7 @@ def check_log(ran: Ran) -> None:
         assert set(counts) >= ROBOT_TOPICS
         odometry = [c for c in reader.connections if c.topic == "/odom"]
         speeds = [
-            (stamp * 1e-9, message.twist.twist.linear.x)  # type: ignore[attr-defined]
+            (stamp * 1e-9, message.twist.twist.linear.x)
             for connection, stamp, raw in reader.messages(connections=odometry)
             for message in [reader.deserialize(raw, connection.msgtype)]
         ]
@@ -130,7 +130,7 @@ def test_she_acknowledges_so_lunch_is_served(lunch: Case, on_sim: Run) -> None:
     check_log(ran)
     with AnyReader([ran.log]) as reader:
         texts = {
-            c.topic: reader.deserialize(raw, c.msgtype).data  # type: ignore[attr-defined]
+            c.topic: reader.deserialize(raw, c.msgtype).data
             for c, _, raw in reader.messages()
             if c.topic == f"{KEPT_AS}say"
         }

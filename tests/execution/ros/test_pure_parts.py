@@ -99,7 +99,7 @@ def test_a_gap_or_a_circle_in_the_frames_is_no_pose() -> None:
     ],
 )
 def test_health(change: dict[str, object], kind: str) -> None:
-    assert health_of(replace(WELL, **change), 10.0, LIMITS).kind == kind  # type: ignore[arg-type]
+    assert health_of(replace(WELL, **change), 10.0, LIMITS).kind == kind
 
 
 def test_motion_is_what_odometry_shows_lately() -> None:

@@ -56,7 +56,7 @@ _SENDING = {
 }
 
 
-class StretchNode(Node):  # type: ignore[misc]
+class StretchNode(Node):  # type: ignore[misc] # rclpy may be missing
     """The simulated driver.
 
     Args:

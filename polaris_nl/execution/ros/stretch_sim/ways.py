@@ -7,16 +7,45 @@ from __future__ import annotations
 
 import heapq
 import math
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from polaris_nl.execution.ros.stretch_sim.floor import Floor
+from typing import Protocol
 
 SPACING_M = 0.15
 _WALL_COST = 2.0
 """How much dearer a point right at a wall is."""
 _PUT_M = 0.6
 """From where the robot doesn't fit (somebody put it there) it may go this far to where it does."""
+
+
+class Ground(Protocol):
+    """What ways lead over: cells of `resolution` metres, the first with its lower left corner at `origin`."""
+
+    @property
+    def width(self) -> int:
+        """In cells."""
+        ...
+
+    @property
+    def height(self) -> int:
+        """In cells."""
+        ...
+
+    @property
+    def resolution(self) -> float:
+        """Metres a cell."""
+        ...
+
+    @property
+    def origin(self) -> tuple[float, float]:
+        """In metres."""
+        ...
+
+    def fits(self, x: float, y: float) -> bool:
+        """Whether the robot can be at a point."""
+        ...
+
+    def room(self, x: float, y: float) -> float:
+        """The metres from a point to what is nearest."""
+        ...
 
 
 class Ways:
@@ -27,7 +56,7 @@ class Ways:
         roomy_m: the distance to walls above which more makes no difference.
     """
 
-    def __init__(self, floor: Floor, roomy_m: float) -> None:
+    def __init__(self, floor: Ground, roomy_m: float) -> None:
         self._floor = floor
         self._width = max(int(floor.width * floor.resolution / SPACING_M), 1)
         self._height = max(int(floor.height * floor.resolution / SPACING_M), 1)
