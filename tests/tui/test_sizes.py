@@ -88,8 +88,10 @@ def test_screens(
     play: Play, size: tuple[int, int, str], log: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     width, height, look = size
-    # A busy machine must not change what is said.
+    # A busy machine must not change what is said, nor show parts of plans on the way to them.
     monkeypatch.setattr("polaris_tui.conversation.ANSWER_WAIT_S", 60.0)
+    monkeypatch.setattr("polaris_tui.app.PATIENCE_S", 60.0)
+    monkeypatch.setattr("polaris_nl.planning.compile.STREAM_S", 60.0)
     if look != "terminal":
         monkeypatch.delenv("NO_COLOR")
     pictures: list[str] = []
