@@ -58,7 +58,7 @@ models: $(STAMP) ## fetch the speech model, unless it is there
 lock: $(STAMP) ## renew the locked versions and hashes
 	$(BIN)/python -m pip install --quiet uv
 	$(COMPILE) --output-file $(LOCK) pyproject.toml
-	$(COMPILE) --extra ros --extra interfaces --extra sim --constraint $(LOCK) --output-file $(ROBOT_LOCK) pyproject.toml
+	$(COMPILE) --extra ros --extra interfaces --extra sim --extra whisper --constraint $(LOCK) --output-file $(ROBOT_LOCK) pyproject.toml
 
 clean: ## remove what was built
 	rm -rf $(VENV) $(VOICES) build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis
@@ -73,6 +73,7 @@ $(STAMP): $(LOCK) pyproject.toml scripts/find-python
 	@touch $@
 
 # ROS 2 and the simulator come on top, where they are wanted: they are several times as big as the rest.
+# Whisper is with them, for the tests that compare it with Vosk.
 $(ROBOT): $(STAMP) $(ROBOT_LOCK) scripts/build_interfaces.py $(INTERFACES)
 	@echo "Adding ROS 2 and the simulator to $(VENV); this takes two or three minutes, once."
 	@$(INSTALL) --use-pep517 --require-hashes -r $(ROBOT_LOCK)
