@@ -92,10 +92,8 @@ class CheckedPlans:
         self._checked.add(made)
         self.count += 1
         goals = sorted(made.goals, key=str)
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            if not is_valid(made.world, made.state, goals, made.actions):
-                return [f"not valid: {made}"]
+        if not _valid(made, goals, made.actions):
+            return [f"not valid: {made}"]
         if made.optimal:
             least = self._least(made, goals)
             if least is not None and least != len(made.actions):
@@ -103,6 +101,9 @@ class CheckedPlans:
         return []
 
     def _least(self, made: Made, goals: list[Formula]) -> int | None:
+        if len(made.actions) < 2:  # Nothing is shorter than one action, but none.
+            none_needed = not made.actions or _valid(made, goals, ())
+            return 0 if none_needed else 1
         if sum(isinstance(g, Literal) and not g.positive for g in goals) > MOST_DENIED:
             return None
         text = problem_text(made.world, made.state, goals)
@@ -112,3 +113,9 @@ class CheckedPlans:
             return None
         found = _search(task.sas, OPTIMAL_ANY, BLIND_S, never)
         return len(found.plan) if found.status == "solved" else None
+
+
+def _valid(made: Made, goals: list[Formula], actions: tuple[Action, ...]) -> bool:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return is_valid(made.world, made.state, goals, actions)
