@@ -14,11 +14,10 @@ from pathlib import Path
 
 import pytest
 
+from tests.execution.ros.processes import new_domain
 from tests.stretch_sim.client import Client
 
 ROOT = Path(__file__).parents[2]
-FIRST_DOMAIN = 140
-_domains = iter(range(FIRST_DOMAIN, 230))
 READY_S = 40.0
 
 
@@ -67,7 +66,7 @@ Start = Callable[..., tuple[Process, Client]]
 @pytest.fixture
 def start(monkeypatch: pytest.MonkeyPatch) -> Iterator[Start]:
     """Starts a simulator on a domain of its own, and a client of it; both end with the test."""
-    monkeypatch.setenv("ROS_DOMAIN_ID", str(next(_domains)))
+    monkeypatch.setenv("ROS_DOMAIN_ID", new_domain())
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
     processes: list[Process] = []
     clients: list[Client] = []
