@@ -125,7 +125,7 @@ def run_on(
                     clock,
                     confirmed=confirmed,
                     sink=sink,
-                    commands=commands,
+                    commands=lambda: _noted(commands(), log),
                     replanner=replanner,
                     resume=order.resume,
                     record=log.write,
@@ -194,6 +194,14 @@ def _replanner(planner: Planner, clock: Clock) -> Replanner:
     # Planning takes no virtual time, and there the answer has to come at the same tick every time.
     virtual = isinstance(clock, VirtualClock)
     return InlineReplanner(planner.segment) if virtual else ThreadedReplanner(planner.segment)
+
+
+def _noted(commands: Iterable[HumanCommand], log: LogWriter) -> Iterable[HumanCommand]:
+    """Commands, each after its words are in the log."""
+    for command in commands:
+        if command.said is not None:
+            log.write(command.said)
+        yield command
 
 
 def _before(order: RunOrder, now: float) -> Iterable[Event]:
