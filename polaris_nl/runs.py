@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from polaris_nl.automaton.automaton import Automaton
-from polaris_nl.automaton.program import Program, program_json
+from polaris_nl.automaton.program import Program
 from polaris_nl.execution.backend import Robot
 from polaris_nl.execution.clock import Clock, RealClock, VirtualClock
 from polaris_nl.execution.durations import LEARNED_FROM
@@ -214,5 +214,5 @@ def _before(order: RunOrder, now: float) -> Iterable[Event]:
 def attachments(order: RunOrder) -> Mapping[str, str]:
     """What makes an order's log explain itself."""
     world = order.planner.world
-    program = program_json(Program(order.automaton, world.domain.name, world.name))
-    return run_attachments(program, world, order.settings)
+    program = Program(order.automaton, world.domain.name, world.name)
+    return run_attachments(program, world, order.planner.wording, order.settings)

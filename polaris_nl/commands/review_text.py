@@ -4,16 +4,20 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from polaris_nl.execution.events import CommandGiven, Event, Heard, Planned, Understood
+from polaris_nl.logs.comparing import Step
 from polaris_nl.logs.diagnosis import Diagnosis, diagnoses
 from polaris_nl.logs.expected import Expectation
 from polaris_nl.logs.filters import start_of
+from polaris_nl.logs.keeping import PROGRAM_TEXT
 from polaris_nl.logs.reader import Log
 from polaris_nl.logs.review import Summary, summary
-from polaris_nl.logs.sayings import fact, said
+from polaris_nl.logs.sayings import facts, said
 from polaris_nl.logs.spans import spans
+from polaris_nl.logs.whats import expectation_text
 from polaris_nl.model.text import listed, sentence
 from polaris_nl.model.wording import Wording
 from polaris_nl.render.glyphs import ASCII, Glyphs, plain
@@ -44,7 +48,7 @@ def _heading(log: Log, short: Summary) -> str:
     if short.started:
         parts.append(time.strftime("%a %d %b %Y, %H:%M", time.localtime(short.started)))
     if short.robot:
-        parts.append(f"robot: {short.robot}")
+        parts.append(f"robot: {'simulated world' if short.robot == 'world' else short.robot}")
     if log.metadata.get("version"):
         parts.append(f"polaris-nl {log.metadata['version']}")
     if log.metadata.get("left_out"):
@@ -59,6 +63,8 @@ def _who(event: Heard) -> str:
 def run_lines(log: Log, short: Summary, wording: Wording | None = None) -> list[str]:
     """What the run of a log did, and what went wrong in it."""
     lines: list[str] = []
+    if PROGRAM_TEXT in log.attachments:
+        lines.append(f"Program: {log.attachments[PROGRAM_TEXT]}")
     planned = next((e for e in reversed(log.events) if isinstance(e, Planned)), None)
     if planned is not None:
         lines.append(said(planned))
@@ -66,29 +72,51 @@ def run_lines(log: Log, short: Summary, wording: Wording | None = None) -> list[
     if short.goals_sent:
         count = f"{short.goals_done} of {short.goals_sent} actions that were begun"
         reached = f" It reached {listed(short.checkpoints)}." if short.checkpoints else ""
-        lines.append(f"Done: {count}, in {short.seconds:.0f} s.{reached}")
-    lines += [f"Waited: {text}" for text in short.waited]
+        lines.append(f"Done: {count}.{reached}")
+    for span in spans(log.events):
+        if span.kind == "wait":
+            lines.append(f"Waited: {span.seconds:.1f} s, {span.label.removeprefix('wait ')}.")
     lines += [f"Decided: {text}" for text in short.transitions]
-    commands = [said(e, wording) for e in log.events if isinstance(e, CommandGiven)]
-    lines += [f"Commanded: {text}" for text in commands]
-    lines += [_problem_line(d) for d in diagnoses(log.events)]
+    start = start_of(log.events)
+    lines += [_told_line(e, start, wording) for e in log.events if isinstance(e, CommandGiven)]
+    wrong = diagnoses(log.events)
+    lines += [_problem_line(d) for d in wrong]
     if short.outcome:
-        lines.append(
-            f"End: {short.outcome}, after {short.seconds:.0f} s. {_reason(log, short)}".strip()
-        )
+        reason = short.reason
+        for found in wrong:  # It has been said already.
+            reason = reason.replace(found.what, "")
+        stopped = any(d.kind == "stopped" for d in wrong)
+        reason = "" if stopped else reason.strip()
+        lines.append(f"End: {short.outcome}, after {short.seconds:.0f} s. {reason}".strip())
     if not log.complete:
         lines.append(f"The file is not whole. {log.missing}")
     return lines
 
 
-def _reason(log: Log, short: Summary) -> str:
-    """Why the run ended, unless that has been said as what went wrong."""
-    told = {d.what for d in diagnoses(log.events)}
-    return "" if short.reason in told else short.reason
+def more_line(log: Log) -> str:
+    """What to look at next."""
+    ended = [d.number for d in diagnoses(log.events) if not d.mended and d.kind != "not-understood"]
+    if ended:
+        last = ended[-1]
+        missed = any(e.id == last and getattr(e, "expected", ()) for e in log.events)
+        seen = f" --expected {last}," if missed else ""
+        return f'More: --ask "why did it end?", --chain {last},{seen} --timeline, --events.'
+    return 'More: --ask "what happened?", --timeline, --events, --export markdown.'
+
+
+def _told_line(event: CommandGiven, start: float, wording: Wording | None) -> str:
+    """A command as it is told the next day: who said what, and when."""
+    what = (
+        f"that {facts(event.literals, wording)}"
+        if event.command == "happened"
+        else f"to {event.command}"
+    )
+    how = f" ({event.source})" if event.source else ""
+    return f"Told: {what}, at {event.time - start:.1f} s{how}."
 
 
 def _problem_line(found: Diagnosis) -> str:
-    lead = "Mended" if found.mended else "Problem"
+    lead = "Stopped" if found.kind == "stopped" else "Mended" if found.mended else "Problem"
     return f"{lead} (event {found.number}): {found.what} {found.why}".rstrip()
 
 
@@ -97,7 +125,17 @@ def line_rows(
 ) -> list[Row]:
     """An event as rows: number, time since the start, and what it says."""
     text = said(event, wording)
+    if isinstance(event, Heard):
+        text = f"{_who(event)}: {text}"
     return event_rows(event.time - start, event.severity, text, glyphs, width, event.id)
+
+
+def step_rows(step: Step, wording: Wording | None, glyphs: Glyphs, width: int) -> list[Row]:
+    """A step of one of two runs, or of both."""
+    if step.sign == "@":
+        return [Row(glyphs.more, "faint")]
+    rows = event_rows(step.at, "info", said(step.event, wording), glyphs, width - 2)
+    return [replace(row, text=f"{step.sign} {row.text}") for row in rows]
 
 
 def chain_rows(
@@ -114,19 +152,10 @@ def expected_lines(
     """What was expected beside what was seen."""
     if not found:
         return ["Nothing in particular was expected at that moment."]
-    lines = []
-    for one in found:
-        expected = f"Expected: {fact(one.literal, wording)}."
-        if one.stale:
-            seen = f"{glyphs.bad} It had not been seen for a while."
-        elif one.holds:
-            seen = f"{glyphs.good} So it was."
-        elif one.instead:
-            seen = f"{glyphs.bad} Seen: {listed([fact(x, wording) for x in one.instead])}."
-        else:
-            seen = f"{glyphs.bad} It was not so."
-        lines.append(f"{expected} {seen}")
-    return lines
+    return [
+        f"{glyphs.good if one.holds and not one.stale else glyphs.bad} {expectation_text(one, wording)}"
+        for one in found
+    ]
 
 
 def replay_line(found: Replayed, wording: Wording | None) -> str:

@@ -22,8 +22,10 @@ from polaris_nl.commands.review_text import (
     chain_rows,
     expected_lines,
     line_rows,
+    more_line,
     replay_line,
     report_markdown,
+    step_rows,
     summary_lines,
 )
 from polaris_nl.execution.events import Event
@@ -53,7 +55,7 @@ def show_summary(log: Log, arguments: Namespace) -> int:
             {**value, **asdict(short), "diagnoses": [asdict(d) for d in diagnoses(log.events)]}
         )
     else:
-        for line in summary_lines(log, _wording(log)):
+        for line in (*summary_lines(log, _wording(log)), more_line(log)):
             print_text(line)
     return 0 if short.outcome in ("", "done") and log.complete else 1
 
@@ -65,7 +67,7 @@ def show_events(log: Log, arguments: Namespace) -> int:
     for number, event in found:
         if arguments.json:
             print_json({"number": number, **event_json(event)})
-        elif event.text or arguments.filter:
+        elif event.severity != "debug" or arguments.filter:
             print_rows(line_rows(event, start, _wording(log), glyphs_for(), width()))
     if not found and not arguments.json:
         print_text("No event matches; try fewer or shorter filters.")
@@ -174,19 +176,35 @@ def _score(log: Log, arguments: Namespace) -> int:
 
 def _diff(log: Log, arguments: Namespace) -> int:
     other = read_log(arguments.diff)
-    found = compare(log.events, other.events, (log.path.name, other.path.name))
+    found = compare(log.events, other.events)
+    same = not found.steps
     if arguments.json:
-        print_json({"equal": not found.diff, **asdict(found)})
-        return 1 if found.diff else 0
-    for line in found.diff:
-        print(plain(line))
-    if not found.diff:
+        steps = [
+            {"sign": s.sign, "line": s.line, "event": s.event.id, "at": round(s.at, 3)}
+            for s in found.steps
+            if s.sign != "@"
+        ]
+        print_json(
+            {
+                "equal": same,
+                "diff": steps,
+                "slower": [asdict(x) for x in found.slower],
+                "seconds": found.seconds,
+            }
+        )
+        return int(not same)
+    if same:
         print_text("The two runs did and decided the same.")
+    else:
+        print_text(log.path.name, "-    ")
+        print_text(other.path.name, "+    ")
+        for step in found.steps:
+            print_rows(step_rows(step, _wording(log), glyphs_for(), width()))
     for slower in found.slower:
         print_text(f"{plain(slower.label)}: {slower.one:.1f} s here, {slower.other:.1f} s there.")
     one, two = found.seconds
     print_text(f"Whole run: {one:.1f} s here, {two:.1f} s there.")
-    return 1 if found.diff else 0
+    return int(not same)
 
 
 def _replay(log: Log, arguments: Namespace) -> int:

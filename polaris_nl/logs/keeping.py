@@ -9,6 +9,9 @@ from typing import Any
 
 from polaris_nl.logs.privacy import KEEP_ALL, Privacy
 
+PROGRAM_TEXT = "program.txt"
+"""The attachment that tells a run's program in words."""
+
 
 @dataclass(frozen=True, slots=True)
 class RawKind:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from polaris_nl.execution.events import Event
-from polaris_nl.logs.diagnosis import diagnoses
+from polaris_nl.logs.diagnosis import diagnoses, in_short
 from polaris_nl.logs.reader import read_log
 from polaris_nl.logs.review import summary
 from polaris_nl.logs.spans import Span, spans
@@ -41,7 +41,7 @@ class Entry:
 
     Attributes:
         started: when, in seconds since the epoch; 0 where it is empty.
-        problem: the first thing that ended or disturbed the run, or "".
+        problem: what ended the run, or disturbed it last, or ""; kind: in a word or two.
         error: why the file can't be read, or "".
     """
 
@@ -52,6 +52,7 @@ class Entry:
     outcome: str = ""
     checkpoints: int = 0
     problem: str = ""
+    kind: str = ""
     complete: bool = False
     error: str = ""
 
@@ -115,5 +116,6 @@ def entry(path: Path) -> Entry:
         short.outcome,
         len(short.checkpoints),
         found[-1].what if found else "",
+        in_short(found[-1]) if found else "",
         log.complete,
     )

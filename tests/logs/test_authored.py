@@ -129,7 +129,10 @@ def test_the_commands_keep_what_was_said(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    program, run = ("--world", "care-home", "--program", "a.polaris.json"), ("run", "a.polaris.json")
+    program, run = (
+        ("--world", "care-home", "--program", "a.polaris.json"),
+        ("run", "a.polaris.json"),
+    )
     assert main(["say", *program, "--log", "said.mcap", TOLD]) == 0
     assert main([*run, "--said", "said.mcap", "--log", "run.mcap"]) == 0
     found = read_log(Path("run.mcap"))

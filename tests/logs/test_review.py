@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -242,13 +243,67 @@ def test_why_the_else_branch_was_taken(otherwise: Path) -> None:
     ("name", "words"),
     [
         ("run-stop pressed", "run-stop button is pressed"),
-        ("forgotten wait", "let the program wait for it"),
+        ("forgotten wait", "let the program wait until the cup is on the drying rack"),
         ("nobody answers", "Nobody did what the program waited for"),
         ("executor killed in the middle of a goal", "ends in the middle of the run"),
     ],
 )
 def test_why_it_halted(name: str, words: str, scenario_log: Carrying, tmp_path: Path) -> None:
     assert words in answer(scenario_log(name, tmp_path), "why did it halt?")
+
+
+def test_why_something_was_not_done(
+    otherwise: Path, scenario_log: Carrying, tmp_path: Path
+) -> None:
+    other = answer(otherwise, "Why didn't it bring the tray?")
+    assert "It went another way from there: On to home." in other
+    over = answer(scenario_log("forgotten wait", tmp_path), "why didn't it put the plate away?")
+    assert "The run was over before." in over
+    assert "the cup is on the drying rack" in over
+    with pytest.raises(UsageError, match="fits"):
+        answer(otherwise, "why didn't it water the flowers?")
+    assert answer(otherwise, "why did it not go to the hall?").startswith("It did.")
+
+
+def test_more_questions(otherwise: Path, scenario_log: Carrying, tmp_path: Path) -> None:
+    halted = scenario_log("forgotten wait", tmp_path)
+    assert "(at cup countertop)" in answer(halted, "what did it expect?")
+    assert answer(halted, "did it finish?").startswith("No: it was halted.")
+    assert answer(otherwise, "did it finish?").startswith("Yes: it was done.")
+    assert re.match(r"At 31\.\d s, that is at \d", answer(halted, "when did it reach fetched?"))
+    assert answer(halted, "why did it stop waiting?") == "It waited for nobody."
+    assert answer(halted, "why is the cup on the drying rack?").startswith("Seen: ")
+    turns = ask(read_log(halted).events, "what happened?").chain
+    assert isinstance(turns[-2], Halted)
+    assert any(isinstance(e, PersonActed) for e in turns)
+
+
+def test_what_the_run_was_told_is_told_with_the_time(
+    scenario_log: Carrying, tmp_path: Path, review: Review
+) -> None:
+    out = review(scenario_log("an answer by word of mouth", tmp_path))[1]
+    assert "Told: that lunch has been dismissed, at 11.3 s (voice)." in out.splitlines()
+    assert "Decided: Lunch is dismissed: on to cancelled." in out.splitlines()
+
+
+def test_a_person_who_stops_a_run_is_no_problem(
+    scenario_log: Carrying, tmp_path: Path, review: Review
+) -> None:
+    out = review(scenario_log("cancel ignored", tmp_path))[1]
+    assert "A person stopped the run at the keyboard." in out
+    assert "Problem" not in out
+
+
+def test_the_else_branch_is_a_decision(otherwise: Path, review: Review) -> None:
+    out = review(otherwise)[1]
+    assert "Decided: On to home, the else branch." in out.splitlines()
+    assert "Program: Tell the resident that lunch is ready." in out
+
+
+def test_events_are_listed_with_what_was_said(told: Path, review: Review) -> None:
+    out = review(told, "--events")[1]
+    assert 'Typed: "Tell the resident that lunch is ready."' in " ".join(out.split())
+    assert "The robot says that it has done it." in out
 
 
 def test_why_it_went_another_way(scenario_log: Carrying, tmp_path: Path) -> None:
@@ -267,7 +322,7 @@ def test_the_summary_tells_the_whole_story(told: Path, review: Review) -> None:
     assert lines[0].startswith("lunch.mcap; ")
     assert 'Typed: "Tell the resident that lunch is ready."' in lines
     assert any(line.startswith("Answer: Once lunch is acknowledged") for line in lines)
-    assert any(line.startswith("Planned: ok") for line in lines)
+    assert any(line.startswith("Planned: 10 actions") for line in lines)
     assert any(line.startswith("Decided: Lunch is acknowledged") for line in lines)
     assert any(line.startswith("End: done") for line in lines)
     assert len(lines) <= 24
@@ -322,8 +377,13 @@ def test_two_runs_compared(told: Path, otherwise: Path, review: Review) -> None:
     assert review(told, "--diff", told)[0] == 0
     code, out = review(told, "--diff", otherwise)
     assert code == 1
-    assert "-checkpoint fetched" in out
-    assert "+checkpoint home" in out
+    lines = [(line[0], line[14:]) for line in out.splitlines()]
+    assert ("-", "Reached fetched.") in lines
+    assert ("+", "Reached home.") in lines
+    found = json.loads(review(told, "--diff", otherwise, "--json")[1])
+    assert {"-checkpoint fetched", "+checkpoint home"} <= {
+        x["sign"] + x["line"] for x in found["diff"]
+    }
 
 
 def test_a_folder_of_logs_is_a_table(
@@ -337,7 +397,7 @@ def test_a_folder_of_logs_is_a_table(
     assert lines[0].split() == ["log", "when", "s", "end", "problem"]
     assert "done" in lines[1]
     assert "halted" in lines[2]
-    assert "I waited 6 seconds" in lines[2]
+    assert lines[2].endswith("nobody came")
     (tmp_path / "zz.mcap").write_bytes(b"no log at all")
     code, out = review(tmp_path, "--json")
     assert code == 1
