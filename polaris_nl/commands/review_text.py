@@ -29,18 +29,25 @@ if TYPE_CHECKING:
     from polaris_nl.replays import Replayed
 
 REPORT_WIDTH = 96
+_WORDS, _MANY = 24, 8
+"""So many lines about words, and about each other thing, are shown of a long log."""
 
 
 def summary_lines(log: Log, wording: Wording | None = None) -> list[str]:
     """A log in a few sentences: what was asked, understood, planned and done, and what went wrong."""
     short = summary(log.events)
-    lines = [_heading(log, short)]
+    words = []
     for event in log.events:
         if isinstance(event, Heard):
-            lines.append(f'{_who(event)}: "{plain(event.utterance)}"')
+            words.append(f'{_who(event)}: "{plain(event.utterance)}"')
         elif isinstance(event, Understood) and event.text:
-            lines.append(f"Answer: {event.text}")
-    return [*lines, *run_lines(log, short, wording)]
+            words.append(f"Answer: {event.text}")
+    if len(words) > _WORDS:
+        left = (
+            f"{len(words) - _WORDS} lines more were said before; --filter topic=heard lists them."
+        )
+        words = [left, *words[-_WORDS:]]
+    return [_heading(log, short), *words, *run_lines(log, short, wording)]
 
 
 def _heading(log: Log, short: Summary) -> str:
@@ -71,16 +78,19 @@ def run_lines(log: Log, short: Summary, wording: Wording | None = None) -> list[
         lines += [f"Not planned: {p['text']}" for p in planned.plan.get("problems", ())[:3]]
     if short.goals_sent:
         count = f"{short.goals_done} of {short.goals_sent} actions that were begun"
-        reached = f" It reached {listed(short.checkpoints)}." if short.checkpoints else ""
+        names = short.checkpoints
+        if len(names) > _MANY:
+            names = (*names[:_MANY], f"{len(names) - _MANY} more")
+        reached = f" It reached {listed(names)}." if names else ""
         lines.append(f"Done: {count}.{reached}")
-    for span in spans(log.events):
-        if span.kind == "wait":
-            lines.append(f"Waited: {span.seconds:.1f} s, {span.label.removeprefix('wait ')}.")
-    lines += [f"Decided: {text}" for text in short.transitions]
+    waits = [s for s in spans(log.events) if s.kind == "wait"]
+    lines += _few([f"Waited: {s.seconds:.1f} s, {s.label.removeprefix('wait ')}." for s in waits])
+    lines += _few([f"Decided: {text}" for text in short.transitions])
     start = start_of(log.events)
-    lines += [_told_line(e, start, wording) for e in log.events if isinstance(e, CommandGiven)]
+    told = [e for e in log.events if isinstance(e, CommandGiven)]
+    lines += _few([_told_line(e, start, wording) for e in told])
     wrong = diagnoses(log.events)
-    lines += [_problem_line(d) for d in wrong]
+    lines += _few([_problem_line(d) for d in wrong])
     if short.outcome:
         reason = short.reason
         for found in wrong:  # It has been said already.
@@ -91,6 +101,14 @@ def run_lines(log: Log, short: Summary, wording: Wording | None = None) -> list[
     if not log.complete:
         lines.append(f"The file is not whole. {log.missing}")
     return lines
+
+
+def _few(lines: list[str]) -> list[str]:
+    """The first and the last lines of many."""
+    if len(lines) <= _MANY:
+        return lines
+    left = f"... {len(lines) - _MANY} more of these, then:"
+    return [*lines[: _MANY - 2], left, *lines[-2:]]
 
 
 def more_line(log: Log) -> str:

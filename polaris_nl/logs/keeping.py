@@ -9,6 +9,8 @@ from typing import Any
 
 from polaris_nl.logs.privacy import KEEP_ALL, Privacy
 
+ABOUT, CUT_OFF = "polaris", "cut_off"
+"""The metadata record of what a log says about itself, and its entry of why the log has no end."""
 PROGRAM_TEXT = "program.txt"
 """The attachment that tells a run's program in words."""
 

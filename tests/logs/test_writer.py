@@ -13,6 +13,7 @@ from polaris_nl.execution.events import Edited, Failed, Observed, RunEnded, Step
 from polaris_nl.logs.journal import Journal
 from polaris_nl.logs.paths import parts_of
 from polaris_nl.logs.reader import read_log
+from polaris_nl.logs.recovery import recover
 from polaris_nl.logs.writer import LogSettings, LogWriter, RawKind
 from polaris_nl.runs import RunOrder, run_simulated
 from tests.execution.story import Case
@@ -151,7 +152,8 @@ def test_a_file_that_cannot_grow_ends_with_a_whole_event(tmp_path: Path) -> None
     assert 0 < int(kept) < 200
     assert numbers(log.events) == list(range(int(kept)))
     assert not log.complete
-    assert "make no whole message" not in log.missing
+    assert log.missing == "It has no end, as it couldn't be written any more (File too large)."
+    assert recover(path).missing == log.missing
 
 
 @pytest.mark.parametrize("halts", [False, True])
