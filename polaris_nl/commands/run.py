@@ -116,7 +116,7 @@ def agreed(session: Session, profile: Profile) -> bool:
     answer = sys.stdin.readline()
     if not answer:
         raise RunError("A robot moves only after a yes, and nobody answers; --yes gives it.")
-    if session.say(answer).interpretation.command != "yes":
+    if session.say(answer.strip()).interpretation.command != "yes":
         raise RunError("Nothing was moved, since the answer wasn't a yes.")
     return True
 

@@ -52,10 +52,10 @@ def attachments_of(
 ) -> dict[str, str]:
     """The attachments that make a log explain itself: program, domain, world and settings as text."""
     texts = {
-        "program.polaris.json": json.dumps(program, indent=2),
+        "program.polaris.json": json.dumps(program, indent=2, ensure_ascii=False),
         "domain.pddl": domain,
         "world.yaml": world,
     }
     if settings is not None:
-        texts["settings.json"] = json.dumps(settings, indent=2)
+        texts["settings.json"] = json.dumps(settings, indent=2, ensure_ascii=False)
     return texts

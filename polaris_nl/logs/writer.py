@@ -201,7 +201,9 @@ class LogWriter:
             work()
         except OSError as error:
             self._fail(error)
-            with contextlib.suppress(OSError):  # Where a few bytes fit still, the file says it itself.
+            with contextlib.suppress(
+                OSError
+            ):  # Where a few bytes fit still, the file says it itself.
                 self._records.journal.metadata(ABOUT, {CUT_OFF: error.strerror or str(error)})
             return False
         return True

@@ -27,9 +27,11 @@ from polaris_nl.logs.asking import ask
 from polaris_nl.logs.chain import chain
 from polaris_nl.logs.expected import beliefs_at, expectations
 from polaris_nl.logs.filters import check, matcher
+from polaris_nl.logs.paths import parts_of
 from polaris_nl.logs.reader import filtered, read_log
 from polaris_nl.logs.sayings import said
 from polaris_nl.logs.spans import spans
+from polaris_nl.logs.writer import LogSettings
 from polaris_nl.model.errors import UsageError
 from polaris_nl.render.glyphs import ASCII, UNICODE
 from polaris_nl.render.run_timeline import timeline_rows
@@ -419,6 +421,18 @@ def test_a_cut_off_log_is_mended_beside_the_original(
     mended = tmp_path / "cut.recovered.mcap"
     assert read_log(mended).events == read_log(path).events
     assert read_log(mended).complete
+
+
+def test_of_a_log_in_parts_only_the_one_that_was_cut_off_is_mended(
+    tmp_path: Path, review: Review
+) -> None:
+    path = write(tmp_path / "a.mcap", goals(400), LogSettings(part_bytes=20_000))
+    last = parts_of(path)[-1]
+    last.write_bytes(last.read_bytes()[:-30])
+    assert review(path)[0] == 1
+    assert [p.name for p in tmp_path.glob("*.recovered.mcap")] == [f"{last.stem}.recovered.mcap"]
+    out = review(path, "--page", 20)[1]
+    assert out.splitlines()[-1] == "Page 20 of 20."
 
 
 @pytest.mark.parametrize(
