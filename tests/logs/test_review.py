@@ -39,6 +39,7 @@ from polaris_nl.runs import RunOrder, run_simulated
 from polaris_nl.session import Session
 from tests.execution.story import Case, case
 from tests.logs.conftest import Carrying
+from tests.logs.decoding import decoded
 from tests.logs.writing import goal, goals, write
 
 WIDTH = 80
@@ -121,6 +122,12 @@ def test_the_whole_chain_has_every_step(told: Path) -> None:
     last = events[-2]
     assert len(chain(events, last.id, whole=True)) > len(chain(events, last.id))
     assert chain(events, 10_000) == []
+
+
+def test_others_decode_every_channel_of_a_session_and_its_run(told: Path) -> None:
+    found = decoded(told)
+    assert {"/rosout", "/polaris/heard", "/polaris/edited", "/polaris/inputs"} <= set(found)
+    assert len(found) >= 16
 
 
 # Filters
