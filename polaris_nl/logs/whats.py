@@ -135,7 +135,8 @@ def expectation_text(one: Expectation, wording: Wording | None) -> str:
 
 def happened_to(events: Events, words: str, wording: Wording | None) -> Reply | None:
     """All that was done to a thing, or seen of it."""
-    thing = re.sub(r"^.*\b(to|of|with) (the |a |an )?", "", words).strip().replace(" ", "-")
+    named = re.sub(r"^.*\b(to|of|with) ", "", words).strip()
+    thing = re.sub(r"^(the|a|an) ", "", named).replace(" ", "-")
     pattern = re.compile(rf"(?<![\w-]){re.escape(thing)}(?![\w-])")
     found = [
         e
@@ -145,7 +146,7 @@ def happened_to(events: Events, words: str, wording: Wording | None) -> Reply | 
         or (isinstance(e, GoalSent) and pattern.search(e.action))
     ]
     if not found:
-        return Reply(f"Nothing in this log is about {thing.replace('-', ' ')}.")
+        return Reply(f"Nothing in this log is about {named}.")
     count = "One event is" if len(found) == 1 else f"{len(found)} events are"
     return Reply(f"{count} about it.", tuple(found), found[-1].id)
 

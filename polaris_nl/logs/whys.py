@@ -42,10 +42,11 @@ from polaris_nl.model.errors import UsageError
 from polaris_nl.model.text import listed, sentence
 from polaris_nl.model.wording import Wording
 
-_KINDS: tuple[type[Event], ...] = (
-    GoalSent, TransitionTaken, Replanned, Skipped, CheckpointReached, Deviated, Waiting, Planned, Edited,
-    Halted,
+_DEEDS: tuple[type[Event], ...] = (
+    GoalSent, TransitionTaken, Replanned, Skipped, Deviated, Waiting, Halted,
 )  # fmt: skip
+_REST: tuple[type[Event], ...] = (CheckpointReached, Planned, Edited)
+"""What a question is about where it fits no deed: "reached home" says less than "I go home"."""
 
 
 def why_end(events: Events, words: str, wording: Wording | None) -> Reply | None:
@@ -79,12 +80,16 @@ def why_else(events: Events, words: str, wording: Wording | None) -> Reply | Non
             "It took no else branch: no transition without a condition stands beside others."
         )
     event = best(taken, words)
-    others = [facts(when, wording) for when in outgoing[event.source] if when]
-    text = (
-        f"{clause(event)} That is the else branch: it is taken at once where none of its siblings'"
-        f" conditions holds, and it was not so that {listed(others, 'or that')}."
+    return about(events, f"{clause(event)} {_as_else(events, event, wording)}", event)
+
+
+def _as_else(events: Events, taken: TransitionTaken, wording: Wording | None) -> str:
+    siblings = (t.get("when", ()) for t in _transitions(events) if t["from"] == taken.source)
+    others = [facts(when, wording) for when in siblings if when]
+    return (
+        "That is the else branch: it is taken at once where none of its siblings' conditions holds,"
+        f" and it was not so that {listed(others, 'or that')}."
     )
-    return about(events, text, event)
 
 
 def why_event(events: Events, words: str, wording: Wording | None) -> Reply | None:
@@ -103,6 +108,8 @@ def why_event(events: Events, words: str, wording: Wording | None) -> Reply | No
         candidates = [e for e in events if isinstance(e, kinds)]
         found = fitting(candidates, words) or (candidates if len(kinds) == 1 else [])
     if not found:
+        found = fitting([e for e in events if isinstance(e, _REST)], words)
+    if not found:
         return None
     event = best(found, words)
     text = clause(event, wording)
@@ -117,7 +124,7 @@ def _kinds(words: str) -> tuple[type[Event], ...]:
         return (Replanned,)
     if re.search(r"skip|leave out|left out|not need", words):
         return (Skipped,)
-    return _KINDS
+    return _DEEDS
 
 
 def _purpose(events: Events, event: Event) -> str:
@@ -149,8 +156,9 @@ def why_not(events: Events, words: str, wording: Wording | None) -> Reply | None
             (e for e in events if isinstance(e, TransitionTaken) and e.source == at["from"]), None
         )
         if other is not None and other.transition != at["id"]:
-            text = f"{lead} It went another way from there: {clause(other, wording)}"
-            return about(events, text, other)
+            text = f'{lead} From "{name_of(events, other.source)}" it went another way: {clause(other)}'
+            more = "" if other.when else f" {_as_else(events, other, wording)}"
+            return about(events, f"{text}{more}", other)
     end = why_end(events, words, wording)
     if end is None:
         return None

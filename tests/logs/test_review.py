@@ -265,7 +265,8 @@ def test_why_something_was_not_done(
     otherwise: Path, scenario_log: Carrying, tmp_path: Path
 ) -> None:
     other = answer(otherwise, "Why didn't it bring the tray?")
-    assert "It went another way from there: On to home." in other
+    assert 'From "alerted" it went another way: On to home. That is the else branch' in other
+    assert answer(otherwise, "why did it go home?").startswith("I go home.")
     over = answer(scenario_log("forgotten wait", tmp_path), "why didn't it put the plate away?")
     assert "The run was over before." in over
     assert "the cup is on the drying rack" in over
