@@ -32,7 +32,7 @@ from polaris_nl.execution.events import (
     Planned,
     Understood,
 )
-from polaris_nl.language.interpretation import Command, Interpretation, Query, Refusal
+from polaris_nl.language.interpretation import Command, Interpretation, Query, Reading, Refusal
 from polaris_nl.model.errors import FileError, PolarisError
 from polaris_nl.model.wording import Wording
 from polaris_nl.model.world import World
@@ -451,13 +451,19 @@ class Session:
         )
 
     def _report_interpreted(self, interpretation: Interpretation) -> None:
-        readings = interpretation.readings
+        # Readings that differ in how they came about alone are no rivals.
+        readings: dict[tuple[str, tuple[str, ...]], Reading] = {}
+        for reading in interpretation.readings:
+            readings.setdefault((reading.text, reading.why), reading)
         self._report(
             Interpreted(
                 time=self._now(),
                 utterance=interpretation.utterance,
                 outcome=interpretation.outcome,
-                readings=[{"text": r.text, "score": r.score, "why": list(r.why)} for r in readings],
+                readings=[
+                    {"text": r.text, "score": r.score, "why": list(r.why)}
+                    for r in readings.values()
+                ],
             )
         )
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from polaris_nl.execution.events import CommandGiven, Event, Heard, Planned, Understood
+from polaris_nl.execution.events import CommandGiven, Event, Heard, Planned, RunStarted, Understood
 from polaris_nl.logs.comparing import Step
 from polaris_nl.logs.diagnosis import Diagnosis, diagnoses
 from polaris_nl.logs.expected import Expectation
@@ -119,6 +119,8 @@ def more_line(log: Log) -> str:
         missed = any(e.id == last and getattr(e, "expected", ()) for e in log.events)
         seen = f" --expected {last}," if missed else ""
         return f'More: --ask "why did it end?", --chain {last},{seen} --timeline, --events.'
+    if not any(isinstance(e, RunStarted) for e in log.events):
+        return 'More: --ask "what was said?", --events, --export markdown.'
     return 'More: --ask "what happened?", --timeline, --events, --export markdown.'
 
 
@@ -142,10 +144,14 @@ def line_rows(
     event: Event, start: float, wording: Wording | None, glyphs: Glyphs, width: int
 ) -> list[Row]:
     """An event as rows: number, time since the start, and what it says."""
-    text = said(event, wording)
-    if isinstance(event, Heard):
-        text = f"{_who(event)}: {text}"
+    text = _told(event, wording)
     return event_rows(event.time - start, event.severity, text, glyphs, width, event.id)
+
+
+def _told(event: Event, wording: Wording | None) -> str:
+    """What an event says; of words, how they came."""
+    lead = f"{_who(event)}: " if isinstance(event, Heard) else ""
+    return f"{lead}{said(event, wording)}"
 
 
 def step_rows(step: Step, wording: Wording | None, glyphs: Glyphs, width: int) -> list[Row]:
@@ -207,7 +213,7 @@ def report_markdown(log: Log, wording: Wording | None) -> str:
     lines += [row.text for row in timeline_rows(spans(log.events), ASCII, REPORT_WIDTH)]
     lines += ["```", "", "## Events", "", "| number | s | what |", "|---:|---:|---|"]
     told = [e for e in log.events if e.severity != "debug" and said(e)]
-    lines += [f"| {e.id} | {e.time - start:.1f} | {_escaped(said(e, wording))} |" for e in told]
+    lines += [f"| {e.id} | {e.time - start:.1f} | {_escaped(_told(e, wording))} |" for e in told]
     if not wrong:
         lines += ["", "Nothing went wrong."]
     return "\n".join(lines)

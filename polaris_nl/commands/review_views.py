@@ -244,7 +244,7 @@ def _export(log: Log, arguments: Namespace) -> int:
         case "markdown":
             print(report_markdown(log, _wording(log)))
         case _:
-            table = rows([event for _, event in found])
+            table = rows([e for _, e in found], start_of(log.events), _wording(log))
             writer = csv.DictWriter(sys.stdout, rows([_NO_EVENT])[0].keys())
             writer.writeheader()
             writer.writerows(table)

@@ -26,6 +26,8 @@ from polaris_nl.execution.events import (
     Waiting,
 )
 from polaris_nl.logs.filters import matcher as matcher
+from polaris_nl.logs.sayings import said
+from polaris_nl.model.wording import Wording
 
 PROBLEMS = (Deviated, Halted, Failed)
 
@@ -140,16 +142,26 @@ def story(events: Sequence[Event]) -> Sequence[tuple[str, Event]]:
     return lines
 
 
-def rows(events: Sequence[Event]) -> list[dict[str, Any]]:
-    """Events as flat rows for export."""
+def rows(
+    events: Sequence[Event], start: float = 0.0, wording: Wording | None = None
+) -> list[dict[str, Any]]:
+    """Events as flat rows for export.
+
+    Args:
+        events: to be exported.
+        start: what `seconds` are counted from, in seconds since the epoch.
+        wording: how facts are put into words.
+    """
     return [
         {
             "number": event.id or number,
             "time": event.time,
+            "seconds": round(event.time - start, 3),
             "kind": type(event).__name__,
             "topic": event.topic,
             "severity": event.severity,
-            "text": event.text,
+            "text": said(event, wording),
+            "causes": " ".join(map(str, event.causes)),
         }
         for number, event in enumerate(events, 1)
     ]

@@ -46,7 +46,7 @@ def said(event: Event, wording: Wording | None = None) -> str:
             return f'"{event.utterance}"'
         case Interpreted():
             best = next((str(r.get("text", "")) for r in event.readings), "")
-            return f"Taken as: {best or event.outcome}."
+            return sentence(f"Taken as: {best or event.outcome}")
         case Planned():
             return f"Planned: {_plan_words(event)}."
         case StateChanged():

@@ -361,6 +361,8 @@ def test_exports(told: Path, review: Review) -> None:
     events = read_log(told).events
     table = list(csv.DictReader(io.StringIO(review(told, "--export", "csv")[1])))
     assert [int(row["number"]) for row in table] == [e.id for e in events]
+    assert table[0]["text"] == '"Tell the resident that lunch is ready."'
+    assert [row["causes"].split() for row in table] == [list(map(str, e.causes)) for e in events]
     lines = review(told, "--export", "jsonl", "--filter", "topic=goal-sent")[1].splitlines()
     sent = [json.loads(line)["action"] for line in lines]
     assert sent == [e.action for e in events if isinstance(e, GoalSent)]
