@@ -16,6 +16,7 @@ from polaris_nl.execution.events import Edited, Event, Heard, Interpreted, Said,
 from polaris_nl.logs.schema import names_of
 
 LEFT_OUT = "[left out]"
+"""Stands for a text that isn't kept."""
 _SPOKEN: tuple[type[Event], ...] = (Heard, Interpreted, Understood, Said)
 """Events that are about words: all their texts go."""
 _KEPT = frozenset({"outcome", "decision", "command", "source"})
@@ -64,12 +65,22 @@ class Privacy:
             changes[name] = self.of_value(value)
         return dataclasses.replace(event, **changes)
 
+    def of_line(self, kind: str, text: str) -> str:
+        """The text of an event of a kind, by the name of its class, as it is told to ROS tools."""
+        spoken = any(kind == x.__name__ for x in (*_SPOKEN, Edited))
+        kept: str = LEFT_OUT if text and spoken and not self.text else self.of_value(text)
+        return kept
+
     def of_value(self, value: Any) -> Any:
-        """A JSON value with the words blackened, in keys, too."""
+        """A JSON value with the words blackened, in keys, too.
+
+        Each gets a name in its place that PDDL and YAML can read, so that a world in which it is somebody's
+        name can still be read, and a run replayed.
+        """
         if not self.never:
             return value
         if isinstance(value, str):
-            return self._pattern.sub(LEFT_OUT, value)
+            return self._pattern.sub(lambda found: f"left-out-{found.lastindex}", value)
         if isinstance(value, list):
             return [self.of_value(x) for x in value]
         if isinstance(value, dict):
@@ -96,8 +107,8 @@ class Privacy:
 
     @cached_property
     def _pattern(self) -> re.Pattern[str]:
-        forms = dict.fromkeys(f for word in self.never for f in _normal_forms(word))
-        return re.compile("|".join(map(_spaced, forms)), re.IGNORECASE)
+        words = (dict.fromkeys(map(_spaced, _normal_forms(word))) for word in self.never)
+        return re.compile("|".join(f"({'|'.join(forms)})" for forms in words), re.IGNORECASE)
 
     @cached_property
     def _bytes(self) -> re.Pattern[bytes]:

@@ -14,7 +14,7 @@ from polaris_nl.logs.compacting import Compactor
 from polaris_nl.logs.finalising import content, written
 from polaris_nl.logs.framing import HEAD, MESSAGE, MESSAGE_HEAD, encoded, message
 from polaris_nl.logs.paths import part_path, parts_of
-from polaris_nl.logs.privacy import LEFT_OUT, Privacy
+from polaris_nl.logs.privacy import Privacy
 from polaris_nl.logs.salvage import Gap, Piece, pieces
 from polaris_nl.logs.schema import event_json, event_of
 from polaris_nl.model.errors import LogError
@@ -95,7 +95,6 @@ class _Redaction:
     def __init__(self, privacy: Privacy) -> None:
         self._privacy = privacy
         self._topics: dict[int, str] = {}
-        self._rosout = ""
         self.changed = self.left_out = 0
 
     def over(self, found: Iterable[Piece | Gap]) -> Iterator[Piece | Gap]:
@@ -153,26 +152,20 @@ class _Redaction:
                 return None
             return piece
         kept = self._privacy.of_event(event)
-        self._rosout = kept.text
         new = json.dumps(event_json(kept), ensure_ascii=False, separators=(",", ":"))
         if kept == event:
             return piece
         self.changed += 1
         return _piece(message(channel, sequence, time, new.encode("utf-8", "backslashreplace")))
 
-    def _said(
-        self, piece: Piece, channel: int, sequence: int, time: int, data: bytes
-    ) -> Piece | None:
-        """A line for ROS tools: it says what the event before it says."""
+    def _said(self, piece: Piece, channel: int, sequence: int, time: int, data: bytes) -> Piece:
+        """A line for ROS tools."""
         level, text, kind = rosout.parsed(data)
-        if text == self._rosout:
+        kept = self._privacy.of_line(kind, text)
+        if kept == text:
             return piece
         self.changed += 1
-        return _piece(
-            message(
-                channel, sequence, time, rosout.encoded(time, level, self._rosout or LEFT_OUT, kind)
-            )
-        )
+        return _piece(message(channel, sequence, time, rosout.encoded(time, level, kept, kind)))
 
 
 def _piece(record: bytes) -> Piece:
