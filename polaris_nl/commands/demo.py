@@ -16,7 +16,6 @@ from polaris_nl.commands.run import shower
 from polaris_nl.commands.transcribe import ears_for, hear_file
 from polaris_nl.logs.paths import log_folder, new_log_path
 from polaris_nl.logs.reader import read_log
-from polaris_nl.logs.review import summary
 from polaris_nl.model.data import data_folder
 from polaris_nl.model.errors import LogError, RunError
 from polaris_nl.model.world_file import load_world
@@ -129,7 +128,7 @@ class _Demo:
         self._step(f"The log {report.log.name}, read back")
         if not self._json:
             log = read_log(report.log)
-            for line in run_lines(log, summary(log.events)):
+            for line in run_lines(log):
                 print_text(line)
             print(f"More: polaris-nl review {shown_path(report.log)}")
 

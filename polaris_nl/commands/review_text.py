@@ -15,6 +15,7 @@ from polaris_nl.logs.filters import start_of
 from polaris_nl.logs.keeping import PROGRAM_TEXT
 from polaris_nl.logs.reader import Log
 from polaris_nl.logs.review import Summary, summary
+from polaris_nl.logs.runs_in import runs_in
 from polaris_nl.logs.sayings import facts, said
 from polaris_nl.logs.spans import spans
 from polaris_nl.logs.whats import expectation_text
@@ -47,7 +48,7 @@ def summary_lines(log: Log, wording: Wording | None = None) -> list[str]:
             f"{len(words) - _WORDS} lines more were said before; --filter topic=heard lists them."
         )
         words = [left, *words[-_WORDS:]]
-    return [_heading(log, short), *words, *run_lines(log, short, wording)]
+    return [_heading(log, short), *words, *run_lines(log, wording)]
 
 
 def _heading(log: Log, short: Summary) -> str:
@@ -67,8 +68,8 @@ def _who(event: Heard) -> str:
     return "Typed" if event.source == "typed" else "Heard"
 
 
-def run_lines(log: Log, short: Summary, wording: Wording | None = None) -> list[str]:
-    """What the run of a log did, and what went wrong in it."""
+def run_lines(log: Log, wording: Wording | None = None) -> list[str]:
+    """What the runs of a log did, and what went wrong in them."""
     lines: list[str] = []
     if PROGRAM_TEXT in log.attachments:
         lines.append(f"Program: {log.attachments[PROGRAM_TEXT]}")
@@ -76,6 +77,23 @@ def run_lines(log: Log, short: Summary, wording: Wording | None = None) -> list[
     if planned is not None:
         lines.append(said(planned))
         lines += [f"Not planned: {p['text']}" for p in planned.plan.get("problems", ())[:3]]
+    runs = runs_in(log.events)
+    of_runs = {e.id for run in runs for e in run}
+    aside = [e for e in log.events if e.id not in of_runs]
+    lines += _few([_problem_line(d) for d in diagnoses(aside)])
+    for number, run in enumerate(runs, 1):
+        if len(runs) > 1:
+            at = time.strftime("%H:%M:%S", time.localtime(run[0].time))
+            lines.append(f"Run {number} of {len(runs)}, from {at} on:")
+        lines += _one_run(run, wording)
+    if not log.complete:
+        lines.append(f"The file is not whole. {log.missing}")
+    return lines
+
+
+def _one_run(run: Sequence[Event], wording: Wording | None) -> list[str]:
+    short, wrong, start = summary(run), diagnoses(run), run[0].time
+    lines: list[str] = []
     if short.goals_sent:
         count = f"{short.goals_done} of {short.goals_sent} actions that were begun"
         names = short.checkpoints
@@ -83,13 +101,11 @@ def run_lines(log: Log, short: Summary, wording: Wording | None = None) -> list[
             names = (*names[:_MANY], f"{len(names) - _MANY} more")
         reached = f" It reached {listed(names)}." if names else ""
         lines.append(f"Done: {count}.{reached}")
-    waits = [s for s in spans(log.events) if s.kind == "wait"]
+    waits = [s for s in spans(run) if s.kind == "wait"]
     lines += _few([f"Waited: {s.seconds:.1f} s, {s.label.removeprefix('wait ')}." for s in waits])
     lines += _few([f"Decided: {text}" for text in short.transitions])
-    start = start_of(log.events)
-    told = [e for e in log.events if isinstance(e, CommandGiven)]
+    told = [e for e in run if isinstance(e, CommandGiven)]
     lines += _few([_told_line(e, start, wording) for e in told])
-    wrong = diagnoses(log.events)
     lines += _few([_problem_line(d) for d in wrong])
     if short.outcome:
         reason = short.reason
@@ -98,8 +114,6 @@ def run_lines(log: Log, short: Summary, wording: Wording | None = None) -> list[
         stopped = any(d.kind == "stopped" for d in wrong)
         reason = "" if stopped else reason.strip()
         lines.append(f"End: {short.outcome}, after {short.seconds:.0f} s. {reason}".strip())
-    if not log.complete:
-        lines.append(f"The file is not whole. {log.missing}")
     return lines
 
 
@@ -208,9 +222,11 @@ def report_markdown(log: Log, wording: Wording | None) -> str:
         elif isinstance(event, Understood) and event.text:
             lines.append(f"  - {_escaped(event.text)}")
     lines += ["", "## What happened", ""]
-    lines += [f"- {_escaped(line)}" for line in run_lines(log, short, wording)]
+    lines += [f"- {_escaped(line)}" for line in run_lines(log, wording)]
     lines += ["", "## Timeline", "", "```text"]
-    lines += [row.text for row in timeline_rows(spans(log.events), ASCII, REPORT_WIDTH)]
+    for number, run in enumerate(runs_in(log.events)):
+        lines += ["", ""] if number else []
+        lines += [row.text for row in timeline_rows(spans(run), ASCII, REPORT_WIDTH)]
     lines += ["```", "", "## Events", "", "| number | s | what |", "|---:|---:|---|"]
     told = [e for e in log.events if e.severity != "debug" and said(e)]
     lines += [f"| {e.id} | {e.time - start:.1f} | {_escaped(_told(e, wording))} |" for e in told]

@@ -11,6 +11,7 @@ import re
 
 from polaris_nl.logs.replies import HELP, Answer, Events
 from polaris_nl.logs.replies import Reply as Reply
+from polaris_nl.logs.runs_in import only_run, run_asked, runs_in
 from polaris_nl.logs.whats import (
     ended_how,
     expected,
@@ -51,7 +52,7 @@ def ask(events: Events, question: str, wording: Wording | None = None) -> Reply:
 
     Args:
         events: of the log.
-        question: in words.
+        question: in words; of several runs it is about the last, unless it says "in the first run".
         wording: how facts are put into words.
 
     Raises:
@@ -59,6 +60,9 @@ def ask(events: Events, question: str, wording: Wording | None = None) -> Reply:
             can be asked.
     """
     words = question.lower().strip(" ?!.")
+    runs = len(runs_in(events))
+    if runs > 1:
+        events = only_run(events, run_asked(words, runs))
     for pattern, answer in _QUESTIONS:
         if re.search(pattern, words):
             reply = answer(events, words, wording)

@@ -12,6 +12,7 @@ from polaris_nl.execution.events import Event
 from polaris_nl.logs.diagnosis import diagnoses, in_short
 from polaris_nl.logs.reader import read_log
 from polaris_nl.logs.review import summary
+from polaris_nl.logs.runs_in import runs_in
 from polaris_nl.logs.spans import Span, spans
 from polaris_nl.model.errors import LogError
 
@@ -60,8 +61,8 @@ class Entry:
 def durations(logs: Iterable[Sequence[Event]]) -> list[Durations]:
     """How long actions, waits and deviations took over many logs, by operator, the commonest first."""
     by_kind: dict[str, list[Span]] = defaultdict(list)
-    for events in logs:
-        for span in spans(events):
+    for run in (run for events in logs for run in runs_in(events)):
+        for span in spans(run):
             if span.kind == "action":
                 by_kind[span.action.strip("()").partition(" ")[0]].append(span)
             elif span.kind != "segment":

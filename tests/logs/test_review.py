@@ -7,6 +7,7 @@ import io
 import json
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -286,6 +287,29 @@ def test_more_questions(otherwise: Path, scenario_log: Carrying, tmp_path: Path)
     turns = ask(read_log(halted).events, "what happened?").chain
     assert isinstance(turns[-2], Halted)
     assert any(isinstance(e, PersonActed) for e in turns)
+
+
+def test_a_session_with_two_runs(
+    told: Path, otherwise: Path, tmp_path: Path, review: Review
+) -> None:
+    path = tmp_path / "session.mcap"
+    events = [*read_log(told).events, *read_log(otherwise).events]
+    write(path, [replace(e, time=float(n)) for n, e in enumerate(events)])
+    out = review(path)[1]
+    assert re.search(r"^Run 1 of 2, from \d", out, re.MULTILINE)
+    assert out.count("End: done") == 2
+    assert out.index("on to fetched") < out.index("Run 2 of 2") < out.index("the else branch")
+    question = "why did it take the else branch"
+    assert "That is the else branch" in answer(path, question)
+    assert "no else branch" in answer(path, f"{question} in the first run?")
+    assert "That is the else branch" in answer(path, f"{question} in run 2?")
+    both, one = (
+        {d["what"]: d["count"] for d in json.loads(review(x, "--durations", "--json")[1])}
+        for x in (path, told)
+    )
+    assert both["move"] > one["move"]
+    first = re.findall(r"^(?:alerted|fetched|home) ", review(path, "--timeline")[1], re.MULTILINE)
+    assert first == ["alerted ", "fetched ", "alerted ", "home "]
 
 
 def test_what_the_run_was_told_is_told_with_the_time(
