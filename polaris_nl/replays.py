@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from polaris_nl.automaton.program import program_of
-from polaris_nl.execution.events import Event, RunEnded, RunStarted, StateChanged
+from polaris_nl.execution.events import Event, RunStarted
 from polaris_nl.execution.replaying import Difference, first_difference, plan_of, replay
 from polaris_nl.execution.settings import RunSettings
 from polaris_nl.execution.state import RunPlan
 from polaris_nl.logs.reader import Log, read_log
+from polaris_nl.logs.runs_in import runs_in
 from polaris_nl.model.errors import LogError, PolarisError
 from polaris_nl.model.wording import PlainWording, Wording
 from polaris_nl.model.world import World
@@ -59,28 +61,14 @@ def replayed(path: Path, wording: Wording | None = None) -> list[Replayed]:
         LogError: the file can't be read, or lacks what a replay needs.
     """
     log = read_log(path, inputs=True)
-    starts = [n for n, e in enumerate(log.events) if isinstance(e, RunStarted)]
-    if not starts:
+    runs = runs_in(log.events)
+    if not runs:
         raise LogError(f"{path} holds no run to replay; take the log of a run.")
     world = world_of(log)
-    found = []
-    for at, following in zip(starts, (*starts[1:], None), strict=True):
-        events = _to_the_end(log.events[at:following])
-        found.append(_of_run(log, events, world, wording or PlainWording(world)))
-    return found
+    return [_of_run(log, run, world, wording or PlainWording(world)) for run in runs]
 
 
-def _to_the_end(events: list[Event]) -> list[Event]:
-    """A run's events: what comes later in the log is another story."""
-    end = next((e for e in events if isinstance(e, RunEnded)), None)
-    if end is None:
-        return events
-    last = events.index(end)
-    after = events[last + 1 : last + 2]
-    return events[: last + 1] + [e for e in after if isinstance(e, StateChanged)]
-
-
-def _of_run(log: Log, events: list[Event], world: World, wording: Wording) -> Replayed:
+def _of_run(log: Log, events: Sequence[Event], world: World, wording: Wording) -> Replayed:
     started = events[0]
     assert isinstance(started, RunStarted)
     try:

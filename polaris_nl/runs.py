@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from polaris_nl.automaton.automaton import Automaton
-from polaris_nl.automaton.program import Program, program_json
+from polaris_nl.automaton.program import Program
 from polaris_nl.execution.backend import Robot
 from polaris_nl.execution.clock import Clock, RealClock, VirtualClock
 from polaris_nl.execution.durations import LEARNED_FROM
@@ -125,7 +125,7 @@ def run_on(
                     clock,
                     confirmed=confirmed,
                     sink=sink,
-                    commands=commands,
+                    commands=lambda: _noted(commands(), log),
                     replanner=replanner,
                     resume=order.resume,
                     record=log.write,
@@ -196,6 +196,14 @@ def _replanner(planner: Planner, clock: Clock) -> Replanner:
     return InlineReplanner(planner.segment) if virtual else ThreadedReplanner(planner.segment)
 
 
+def _noted(commands: Iterable[HumanCommand], log: LogWriter) -> Iterable[HumanCommand]:
+    """Commands, each after its words are in the log."""
+    for command in commands:
+        if command.said is not None:
+            log.write(command.said)
+        yield command
+
+
 def _before(order: RunOrder, now: float) -> Iterable[Event]:
     yield from order.before
     if not any(isinstance(e, Planned) for e in order.before):
@@ -206,5 +214,5 @@ def _before(order: RunOrder, now: float) -> Iterable[Event]:
 def attachments(order: RunOrder) -> Mapping[str, str]:
     """What makes an order's log explain itself."""
     world = order.planner.world
-    program = program_json(Program(order.automaton, world.domain.name, world.name))
-    return run_attachments(program, world, order.settings)
+    program = Program(order.automaton, world.domain.name, world.name)
+    return run_attachments(program, world, order.planner.wording, order.settings)

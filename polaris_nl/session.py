@@ -32,10 +32,11 @@ from polaris_nl.execution.events import (
     Planned,
     Understood,
 )
-from polaris_nl.language.interpretation import Command, Interpretation, Query, Refusal
+from polaris_nl.language.interpretation import Command, Interpretation, Query, Reading, Refusal
 from polaris_nl.model.errors import FileError, PolarisError
 from polaris_nl.model.wording import Wording
 from polaris_nl.model.world import World
+from polaris_nl.past import Past
 from polaris_nl.publishing import Publisher, Subscriber
 from polaris_nl.replanning import Published, Replanner
 from polaris_nl.snapshot import Answer, Planning, Snapshot, answer_json
@@ -72,6 +73,7 @@ class Session:
         self.path = path
         self.running = False  # A face says so while it carries the program out.
         self._sink = sink or (lambda event: None)
+        self._past = Past()
         self._now = now
         self._history = History(automaton or Automaton())
         self._dialogue: Dialogue | None = None
@@ -142,7 +144,7 @@ class Session:
             heard: how it was heard, for the log, where it was spoken.
         """
         started = time.perf_counter()
-        self._sink(heard or Heard(time=self._now(), utterance=utterance, source=source))
+        self._report(heard or Heard(time=self._now(), utterance=utterance, source=source))
         interpretation, dialogue = self._interpret(utterance)
         self._dialogue = dialogue
         self._report_interpreted(interpretation)
@@ -208,6 +210,11 @@ class Session:
             self._publisher.snapshot.revision, self._publisher.snapshot.automaton
         )
         return self._publisher.wait(lambda snapshot: snapshot.planning != "planning", seconds)
+
+    @property
+    def past(self) -> tuple[Event, ...]:
+        """What was heard, understood and changed so far, for the log of a run that follows from it."""
+        return self._past.events()
 
     def report_to(self, sink: Callable[[Event], None]) -> None:
         """Reports everything that happens from now on to another sink."""
@@ -379,7 +386,7 @@ class Session:
         try:
             write_program(self.program, self.path)
         except FileError as error:
-            self._sink(Failed(time=self._now(), text=str(error), what="save"))
+            self._report(Failed(time=self._now(), text=str(error), what="save"))
             return str(error)
         return ""
 
@@ -392,7 +399,7 @@ class Session:
             undoable=tuple(step.label for step in self._history.past),
             redoable=tuple(step.label for step, _ in self._history.future),
         )
-        self._sink(
+        self._report(
             Edited(
                 time=self._now(),
                 text=label,
@@ -422,14 +429,18 @@ class Session:
 
     # Events
 
+    def _report(self, event: Event) -> None:
+        self._past.add(event)
+        self._sink(event)
+
     def _report_planned(self, snapshot: Snapshot) -> None:
         if snapshot.plan is None:
-            self._sink(Failed(time=self._now(), text=snapshot.failure, what="planning"))
+            self._report(Failed(time=self._now(), text=snapshot.failure, what="planning"))
             return
         from polaris_nl.planning.plan_json import plan_json
 
         plan = snapshot.plan
-        self._sink(
+        self._report(
             Planned(
                 time=self._now(),
                 revision=snapshot.revision,
@@ -440,20 +451,26 @@ class Session:
         )
 
     def _report_interpreted(self, interpretation: Interpretation) -> None:
-        readings = interpretation.readings
-        self._sink(
+        # Readings that differ in how they came about alone are no rivals.
+        readings: dict[tuple[str, tuple[str, ...]], Reading] = {}
+        for reading in interpretation.readings:
+            readings.setdefault((reading.text, reading.why), reading)
+        self._report(
             Interpreted(
                 time=self._now(),
                 utterance=interpretation.utterance,
                 outcome=interpretation.outcome,
-                readings=[{"text": r.text, "score": r.score, "why": list(r.why)} for r in readings],
+                readings=[
+                    {"text": r.text, "score": r.score, "why": list(r.why)}
+                    for r in readings.values()
+                ],
             )
         )
 
     def _report_understood(self, answer: Answer) -> None:
         value = answer_json(answer, self.program_of(answer.snapshot.automaton))
         value.pop("program")
-        self._sink(
+        self._report(
             Understood(
                 time=self._now(),
                 text=answer.say,

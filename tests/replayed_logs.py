@@ -39,11 +39,14 @@ class ReplayedLogs:
         closed, self._closed[:] = list(self._closed), []
         for path in closed:
             if path.exists() and _has_run(path):
-                for one in replayed(path):
-                    self.runs += 1
-                    if one.difference is not None:
-                        found.append(f"{path.name}: {one.difference}")
+                self.runs += 1
+                found += differences(path)
         return found
+
+
+def differences(path: Path) -> list[str]:
+    """What the replay of a log's runs did otherwise."""
+    return [f"{path.name}: {x.difference}" for x in replayed(path) if x.difference is not None]
 
 
 def _has_run(path: Path) -> bool:

@@ -14,10 +14,8 @@ from polaris_nl.commands.common import print_json, print_rows, print_text, shown
 from polaris_nl.commands.review_text import run_lines
 from polaris_nl.commands.run import shower
 from polaris_nl.commands.transcribe import ears_for, hear_file
-from polaris_nl.execution.events import Event
 from polaris_nl.logs.paths import log_folder, new_log_path
 from polaris_nl.logs.reader import read_log
-from polaris_nl.logs.review import summary
 from polaris_nl.model.data import data_folder
 from polaris_nl.model.errors import LogError, RunError
 from polaris_nl.model.world_file import load_world
@@ -46,10 +44,9 @@ class _Demo:
         self._steps = 0
 
     def run(self) -> int:
-        events: list[Event] = []
         self._step("Loading the care home, its language and the speech model")
         maker = EarMaker()
-        with Session(load_world(WORLD), sink=events.append) as session:
+        with Session(load_world(WORLD)) as session:
             session.warm_up()
             said = self._hear(session, maker)
             plan = session.wait().plan
@@ -60,7 +57,7 @@ class _Demo:
             program = self._folder / "demo.polaris.json"
             write_program(session.program, program)
             self._plan(session)
-            reports = [self._run_with(way, session, tuple(events)) for way in WAYS]
+            reports = [self._run_with(way, session) for way in WAYS]
         for report in reports:
             self._review(report)
         seconds = time.perf_counter() - self._started
@@ -117,12 +114,12 @@ class _Demo:
         if snapshot.plan is not None and not self._json:
             plan_command.show(snapshot.automaton, snapshot.plan, session.wording)
 
-    def _run_with(self, way: str, session: Session, before: tuple[Event, ...]) -> RunReport:
+    def _run_with(self, way: str, session: Session) -> RunReport:
         self._step(f"A run in the simulated world: the resident will {way}")
         snapshot = session.snapshot
         assert snapshot.plan is not None
         order = RunOrder(
-            snapshot.automaton, snapshot.plan, session.planner, (way,), before=before,
+            snapshot.automaton, snapshot.plan, session.planner, (way,), before=session.past,
             log=new_log_path(f"demo-{way}", self._folder),
         )  # fmt: skip
         return run_simulated(order, confirmed=True, show=shower(self._json))
@@ -131,7 +128,7 @@ class _Demo:
         self._step(f"The log {report.log.name}, read back")
         if not self._json:
             log = read_log(report.log)
-            for line in run_lines(log, summary(log.events)):
+            for line in run_lines(log):
                 print_text(line)
             print(f"More: polaris-nl review {shown_path(report.log)}")
 

@@ -11,9 +11,9 @@ from polaris_nl.commands.common import (
     print_json,
     print_rows,
     print_text,
-    session_of,
     width,
 )
+from polaris_nl.commands.session_log import logged_session
 from polaris_nl.language.tokens import LONGEST
 from polaris_nl.render.glyphs import glyphs_for
 from polaris_nl.render.program import program_rows
@@ -27,7 +27,7 @@ def run(arguments: Namespace) -> int:
     """Answers each line at once, until the end of the input or "quit"; 1 where something couldn't be saved."""
     code = 0
     talking = sys.stdin.isatty() and not arguments.json
-    with session_of(arguments) as session:
+    with logged_session(arguments) as (session, _):
         if talking:
             print_text(
                 f'World: {session.world.name}. Say what the robot should achieve; "help" tells more, '

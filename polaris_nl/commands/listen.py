@@ -6,20 +6,17 @@ import sys
 import threading
 import time
 from argparse import Namespace
-from collections.abc import Iterator
-from contextlib import contextmanager
-from pathlib import Path
 
-from polaris_nl.automaton.program import program_json
-from polaris_nl.commands.common import complain, print_json, print_text, session_of
+from polaris_nl.commands.common import complain, print_json, print_text
+from polaris_nl.commands.session_log import logged_session
 from polaris_nl.commands.transcribe import ears_for
-from polaris_nl.execution.events import Event
+from polaris_nl.execution.events import Event, Said
 from polaris_nl.hands_free.conversation import Conversation, Reply
 from polaris_nl.hands_free.listening import Listening
 from polaris_nl.hands_free.phrases import spoken_names
 from polaris_nl.hands_free.recording import AudioKeeper
 from polaris_nl.hands_free.running import Runs
-from polaris_nl.logs.writer import LogWriter, attachments_of
+from polaris_nl.logs.privacy import privacy_of
 from polaris_nl.model.errors import UsageError
 from polaris_nl.session import Session
 from polaris_nl.snapshot import answer_json
@@ -51,7 +48,9 @@ def run(arguments: Namespace) -> int:
     if arguments.level:
         return _level(source, arguments.json)
     maker = EarMaker()
-    with _parts(arguments) as (session, log):
+    if arguments.record and arguments.log is None:
+        raise UsageError("--record keeps the sound in a log; name one with --log OUT.mcap.")
+    with logged_session(arguments) as (session, log):
         ears = ears_for(session, maker, arguments.recogniser)
         face = _Face(session, arguments.json, _HOW[arguments.mode])
         for text in gaps_in_words(ears.alikes, spoken_names(session.understanding)):
@@ -69,7 +68,15 @@ def run(arguments: Namespace) -> int:
             MicroWakeWord() if arguments.mode == "wake" else None,
             AudioKeeper(log).keep if log is not None and arguments.record else None,
         )  # fmt: skip
-        runs = Runs(conversation, sink, lambda text: _tell(face, speaker, text), arguments.log)
+
+        def tell(text: str) -> None:
+            face.tells(text)
+            if speaker is not None:
+                speaker.say(text, "run")
+                sink(Said(time=time.time(), text=text, aloud=True))
+
+        privacy = privacy_of(arguments.leave_out)
+        runs = Runs(conversation, sink, tell, arguments.log, privacy)
         listening.started = runs.start
         if speaker is not None:
             speaker.changed = listening.spoke
@@ -133,42 +140,10 @@ class _Face:
             print_json({"utterance": said.text, "outcome": outcome, "say": reply.text, **heard})
 
 
-@contextmanager
-def _parts(arguments: Namespace) -> Iterator[tuple[Session, LogWriter | None]]:
-    """The session, and the log where one is asked for."""
-    with session_of(arguments) as session:
-        path: Path | None = arguments.log
-        if path is None:
-            if arguments.record:
-                raise UsageError("--record keeps the sound in a log; name one with --log OUT.mcap.")
-            yield session, None
-            return
-        world = session.world
-        attachments = attachments_of(
-            program_json(session.program), world.domain.source, world.source
-        )
-        with LogWriter(path, attachments) as log:
-            session.report_to(lambda event: _ignore(log.write(event)))
-            yield session, log
-            session.wait()
-        if log.failure:
-            complain(log.failure)
-
-
-def _ignore(kept: bool) -> None:
-    """A log says itself what it could not keep."""
-
-
 def _speaker(arguments: Namespace) -> Speaker | None:
     if not arguments.aloud:
         return None
     return Speaker(find_voice(), SoundPlayer())
-
-
-def _tell(face: _Face, speaker: Speaker | None, text: str) -> None:
-    face.tells(text)
-    if speaker is not None:
-        speaker.say(text, "run")
 
 
 def _keys(listening: Listening) -> None:

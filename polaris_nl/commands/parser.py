@@ -79,6 +79,20 @@ def _program(parser: _Parser) -> None:
     _world(parser)
 
 
+def _session_log(parser: _Parser) -> None:
+    parser.add_argument(
+        "--log", metavar="OUT.mcap", type=Path, help="keep what is said and changed in a log"
+    )
+    _leave_out(parser)
+
+
+def _leave_out(parser: _Parser) -> None:
+    parser.add_argument(
+        "--leave-out", metavar="WHAT", action="append", default=[],
+        help="keep audio, text (what people said), or any other word out of the log",
+    )  # fmt: skip
+
+
 def _recogniser(parser: _Parser) -> None:
     parser.add_argument(
         "--recogniser", choices=("vosk", "whisper"), default="vosk",
@@ -100,6 +114,7 @@ def _authoring(adder: _Adder) -> None:
     )
     _program_option(say)
     _world(say)
+    _session_log(say)
     dialogue = adder.add(
         "dialogue",
         "answer one utterance a line, from the keyboard or a pipe",
@@ -107,6 +122,7 @@ def _authoring(adder: _Adder) -> None:
     )
     _program_option(dialogue)
     _world(dialogue)
+    _session_log(dialogue)
     tui = adder.add(
         "tui",
         "edit a program on the whole screen",
@@ -184,9 +200,10 @@ def _planning(adder: _Adder) -> None:
         help="the clear yes without which no robot moves; else it is asked for",
     )
     run.add_argument("--log", metavar="OUT.mcap", type=Path, help="where to write the log")
+    _leave_out(run)
     run.add_argument(
-        "--leave-out", metavar="WHAT", action="append", default=[],
-        help="keep audio, text (what people said), or any other word out of the log",
+        "--said", metavar="LOG.mcap", type=Path,
+        help="let the log begin with what was said in this one, of say, dialogue or listen",
     )  # fmt: skip
     run.add_argument(
         "--halt-without-log", action="store_true",
@@ -250,7 +267,7 @@ def _speaking(adder: _Adder) -> None:
     listen.add_argument(
         "--headset", action="store_true", help="listen while speaking: it can't hear itself"
     )
-    listen.add_argument("--log", metavar="OUT.mcap", type=Path, help="keep what happens in a log")
+    _session_log(listen)
     listen.add_argument(
         "--record", action="store_true", help="keep the sound of it in the log, too"
     )

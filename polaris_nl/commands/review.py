@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from argparse import Namespace
 from dataclasses import asdict
-from itertools import islice
 from pathlib import Path
 
 from polaris_nl.commands.common import (
@@ -20,7 +19,7 @@ from polaris_nl.commands.review_text import line_rows
 from polaris_nl.commands.review_views import VIEWS, show_events, show_summary
 from polaris_nl.logs.filters import check, start_of
 from polaris_nl.logs.privacy import privacy_of
-from polaris_nl.logs.reader import Log, open_log, read_log
+from polaris_nl.logs.reader import Log, open_log, read_log, read_page
 from polaris_nl.logs.recovery import being_written, recover, recovered_path
 from polaris_nl.logs.redacting import redact
 from polaris_nl.logs.schema import event_json
@@ -62,19 +61,29 @@ def _opened(path: Path) -> Log:
     log = read_log(path)
     if log.complete:
         return log
-    if being_written(path):
+    if being_written(log.parts[-1]):
         complain("This log is still being written; what follows is what it holds so far.")
         return log
-    complain(log.missing)
-    target = recovered_path(path)
-    if not target.exists() or target.stat().st_mtime < path.stat().st_mtime:
+    complain(f"The log isn't whole. {log.missing}")
+    for part in log.parts:
+        _mend(part)
+    return log
+
+
+def _mend(part: Path) -> None:
+    """Makes a whole file of one that isn't, once, and says where it is."""
+    with open_log(part) as file:
+        list(file.events())  # A damaged chunk is found when it is read.
+        if file.complete:
+            return
+    target = recovered_path(part)
+    if not target.exists() or target.stat().st_mtime < part.stat().st_mtime:
         try:
-            recover(path)
+            recover(part)
         except LogError as error:
             complain(str(error))
-            return log
+            return
     complain(f"A whole file of what is there: {shown_path(target)}")
-    return log
 
 
 def _recover(arguments: Namespace) -> int:
@@ -114,9 +123,9 @@ def _page(arguments: Namespace) -> int:
     if arguments.page < 1:
         raise UsageError("Pages are counted from 1.")
     with open_log(arguments.log) as file:
-        start = start_of(list(islice(file.events(), 200)))
-        found = list(file.events((arguments.page - 1) * PAGE, arguments.page * PAGE))
-        pages = -(-len(file) // PAGE)
+        start = start_of(list(file.events(0, 200)))
+    found, count = read_page(arguments.log, (arguments.page - 1) * PAGE, arguments.page * PAGE)
+    pages = -(-count // PAGE)
     if not found:
         raise UsageError(f"There is no page {arguments.page}; the log has {pages}.")
     first = (arguments.page - 1) * PAGE + 1

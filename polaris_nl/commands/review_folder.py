@@ -22,7 +22,7 @@ def show_folder(folder: Path, as_json: bool) -> int:
     elif not found:
         print_text(f"There are no logs in {folder}.")
     else:
-        names = min(max(len(e.path.name) for e in found), width() - 45)
+        names = min(max(len(e.path.name) for e in found), max(width() - _BESIDE - _ROOM, 10))
         print(f"{'log':<{names}}  {'when':<16}  {'s':>5}  {'end':<8}  problem".rstrip())
         for one in found:
             print(_row(one, names))
@@ -36,8 +36,22 @@ def _row(one: Entry, names: int) -> str:
         return cut(f"{name:<{names}}  {plain(one.error)}", width(), more)
     when = time.strftime("%Y-%m-%d %H:%M", time.localtime(one.started)) if one.started else ""
     end = one.outcome or ("cut off" if one.robot else "no run")
-    row = f"{name:<{names}}  {when:<16}  {one.seconds:5.0f}  {end:<8}  {plain(one.problem)}"
+    row = f"{name:<{names}}  {when:<16}  {one.seconds:5.0f}  {end:<8}  {_problem(one, names)}"
     return cut(row.rstrip(), width(), more)
+
+
+def _problem(one: Entry, names: int) -> str:
+    """A sentence where there is room for one, else what kind of problem it is."""
+    if not one.kind or width() - names - _BESIDE >= _SENTENCE:
+        return plain(one.problem)
+    mended = ", mended" if one.outcome == "done" else ""
+    return f"{one.kind}{mended}"
+
+
+_BESIDE = 39
+"""Columns that when, seconds and end take, with the space between."""
+_ROOM, _SENTENCE = 16, 40
+"""Columns for what kind of problem it is, and for a sentence about it."""
 
 
 def show_durations(path: Path, as_json: bool) -> int:

@@ -8,8 +8,6 @@ import sys
 from argparse import Namespace
 from collections.abc import Callable, Mapping
 from dataclasses import asdict
-from functools import cached_property
-from typing import Any, cast
 
 from polaris_nl.commands.common import (
     print_json,
@@ -22,10 +20,13 @@ from polaris_nl.commands.review_text import (
     chain_rows,
     expected_lines,
     line_rows,
+    more_line,
     replay_line,
     report_markdown,
+    step_rows,
     summary_lines,
 )
+from polaris_nl.commands.review_words import words_of
 from polaris_nl.execution.events import Event
 from polaris_nl.logs.asking import ask
 from polaris_nl.logs.chain import chain
@@ -35,11 +36,11 @@ from polaris_nl.logs.expected import expectations
 from polaris_nl.logs.filters import matcher, start_of
 from polaris_nl.logs.reader import Log, filtered, read_log
 from polaris_nl.logs.review import next_problem, rows, summary
+from polaris_nl.logs.runs_in import runs_in
 from polaris_nl.logs.sayings import said
 from polaris_nl.logs.schema import event_json
 from polaris_nl.logs.spans import spans
 from polaris_nl.model.errors import LogError, UsageError
-from polaris_nl.model.wording import Wording
 from polaris_nl.render.glyphs import glyphs_for, plain
 from polaris_nl.render.run_timeline import timeline_rows
 
@@ -53,7 +54,7 @@ def show_summary(log: Log, arguments: Namespace) -> int:
             {**value, **asdict(short), "diagnoses": [asdict(d) for d in diagnoses(log.events)]}
         )
     else:
-        for line in summary_lines(log, _wording(log)):
+        for line in (*summary_lines(log, words_of(log)), more_line(log)):
             print_text(line)
     return 0 if short.outcome in ("", "done") and log.complete else 1
 
@@ -65,38 +66,39 @@ def show_events(log: Log, arguments: Namespace) -> int:
     for number, event in found:
         if arguments.json:
             print_json({"number": number, **event_json(event)})
-        elif event.text or arguments.filter:
-            print_rows(line_rows(event, start, _wording(log), glyphs_for(), width()))
+        elif event.severity != "debug" or arguments.filter:
+            print_rows(line_rows(event, start, words_of(log), glyphs_for(), width()))
     if not found and not arguments.json:
         print_text("No event matches; try fewer or shorter filters.")
     return 0
 
 
 def _ask(log: Log, arguments: Namespace) -> int:
-    reply = ask(log.events, arguments.ask, _wording(log))
+    reply = ask(log.events, arguments.ask, words_of(log))
     if arguments.json:
         print_json(
             {
                 "question": arguments.ask,
                 "answer": reply.text,
                 "event": reply.number,
-                "chain": [{"number": e.id, "text": said(e, _wording(log))} for e in reply.chain],
+                "chain": [{"number": e.id, "text": said(e, words_of(log))} for e in reply.chain],
             }
         )
         return 0
     print_text(reply.text)
     if reply.chain:
         print()
-        print_rows(chain_rows(reply.chain, log, _wording(log), glyphs_for(), width()))
+        print_rows(chain_rows(reply.chain, log, words_of(log), glyphs_for(), width()))
     return 0
 
 
 def _timeline(log: Log, arguments: Namespace) -> int:
-    found = spans(log.events)
     if arguments.json:
+        found = [s for run in runs_in(log.events) for s in spans(run)]
         print_json([{**asdict(s), "seconds": round(s.seconds, 3)} for s in found])
     else:
-        print_rows(timeline_rows(found, glyphs_for(), width()))
+        for run in runs_in(log.events) or [[]]:
+            print_rows(timeline_rows(spans(run), glyphs_for(), width()))
     return 0
 
 
@@ -105,7 +107,7 @@ def _step(log: Log, arguments: Namespace) -> int:
     if arguments.json:
         print_json({"number": event.id, **event_json(event)})
         return 0
-    print_rows(line_rows(event, start_of(log.events), _wording(log), glyphs_for(), width()))
+    print_rows(line_rows(event, start_of(log.events), words_of(log), glyphs_for(), width()))
     for key, value in event_json(event).items():
         if key not in ("time", "text", "id") and value not in ("", [], {}, None):
             print_text(json.dumps(value, ensure_ascii=False), f"{key}: ")
@@ -121,7 +123,7 @@ def _next(log: Log, arguments: Namespace) -> int:
     else:
         print_rows(
             line_rows(
-                _event(log, number), start_of(log.events), _wording(log), glyphs_for(), width()
+                _event(log, number), start_of(log.events), words_of(log), glyphs_for(), width()
             )
         )
         print_text(f"After it: --next {number}; what led to it: --chain {number}.")
@@ -134,7 +136,7 @@ def _chain(log: Log, arguments: Namespace) -> int:
     if arguments.json:
         print_json([{"number": e.id, **event_json(e)} for e in found])
     else:
-        print_rows(chain_rows(found, log, _wording(log), glyphs_for(), width()))
+        print_rows(chain_rows(found, log, words_of(log), glyphs_for(), width()))
     return 0
 
 
@@ -144,8 +146,8 @@ def _expected(log: Log, arguments: Namespace) -> int:
     if arguments.json:
         print_json([asdict(x) for x in found])
         return 0
-    print_rows(line_rows(event, start_of(log.events), _wording(log), glyphs_for(), width()))
-    for line in expected_lines(found, _wording(log), glyphs_for()):
+    print_rows(line_rows(event, start_of(log.events), words_of(log), glyphs_for(), width()))
+    for line in expected_lines(found, words_of(log), glyphs_for()):
         print_text(line)
     return 0
 
@@ -174,19 +176,35 @@ def _score(log: Log, arguments: Namespace) -> int:
 
 def _diff(log: Log, arguments: Namespace) -> int:
     other = read_log(arguments.diff)
-    found = compare(log.events, other.events, (log.path.name, other.path.name))
+    found = compare(log.events, other.events)
+    same = not found.steps
     if arguments.json:
-        print_json({"equal": not found.diff, **asdict(found)})
-        return 1 if found.diff else 0
-    for line in found.diff:
-        print(plain(line))
-    if not found.diff:
+        steps = [
+            {"sign": s.sign, "line": s.line, "event": s.event.id, "at": round(s.at, 3)}
+            for s in found.steps
+            if s.sign != "@"
+        ]
+        print_json(
+            {
+                "equal": same,
+                "diff": steps,
+                "slower": [asdict(x) for x in found.slower],
+                "seconds": found.seconds,
+            }
+        )
+        return int(not same)
+    if same:
         print_text("The two runs did and decided the same.")
+    else:
+        print_text(log.path.name, "-    ")
+        print_text(other.path.name, "+    ")
+        for step in found.steps:
+            print_rows(step_rows(step, words_of(log), glyphs_for(), width()))
     for slower in found.slower:
         print_text(f"{plain(slower.label)}: {slower.one:.1f} s here, {slower.other:.1f} s there.")
     one, two = found.seconds
     print_text(f"Whole run: {one:.1f} s here, {two:.1f} s there.")
-    return 1 if found.diff else 0
+    return int(not same)
 
 
 def _replay(log: Log, arguments: Namespace) -> int:
@@ -206,7 +224,7 @@ def _replay(log: Log, arguments: Namespace) -> int:
         )
     else:
         for one in found:
-            print_text(replay_line(one, _wording(log)))
+            print_text(replay_line(one, words_of(log)))
     return 0 if all(r.difference is None for r in found) else 1
 
 
@@ -224,9 +242,9 @@ def _export(log: Log, arguments: Namespace) -> int:
         case "json":
             print_json({"log": log.path.name, "metadata": log.metadata, "events": list(values)})
         case "markdown":
-            print(report_markdown(log, _wording(log)))
+            print(report_markdown(log, words_of(log)))
         case _:
-            table = rows([event for _, event in found])
+            table = rows([e for _, e in found], start_of(log.events), words_of(log))
             writer = csv.DictWriter(sys.stdout, rows([_NO_EVENT])[0].keys())
             writer.writeheader()
             writer.writerows(table)
@@ -238,30 +256,6 @@ def _event(log: Log, number: int) -> Event:
     if found is None:
         raise UsageError(f"There is no event {number}; the log has {len(log.events)}.")
     return found
-
-
-class _Words:
-    """The words of a log's world, loaded when the first of them is needed: that takes a second or two."""
-
-    def __init__(self, log: Log) -> None:
-        self._log = log
-
-    @cached_property
-    def _own(self) -> Wording:
-        from polaris_nl.language.grammar import load_grammar
-        from polaris_nl.language.wording import GrammarWording
-        from polaris_nl.replays import world_of
-
-        world = world_of(self._log)
-        return GrammarWording(world, load_grammar(world.domain))
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self._own, name)
-
-
-def _wording(log: Log) -> Wording | None:
-    """How the log's world is put into words; None where the log holds no world."""
-    return cast(Wording, _Words(log)) if "world.yaml" in log.attachments else None
 
 
 _NO_EVENT = Event(time=0.0)

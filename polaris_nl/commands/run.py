@@ -7,10 +7,13 @@ import sys
 import threading
 from argparse import Namespace
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
+from pathlib import Path
 
 from polaris_nl.automaton.automaton import Automaton
+from polaris_nl.automaton.program import Program
 from polaris_nl.commands.common import (
     complain,
     opened,
@@ -27,13 +30,14 @@ from polaris_nl.execution.state import HumanCommand
 from polaris_nl.hands_free.running import command_in as command_in
 from polaris_nl.language.understanding import Understanding
 from polaris_nl.logs.privacy import privacy_of
-from polaris_nl.model.errors import RunError, UsageError, did_you_mean
+from polaris_nl.model.errors import LogError, RunError, UsageError, did_you_mean
 from polaris_nl.model.text import capital
 from polaris_nl.model.world import World
 from polaris_nl.render.glyphs import glyphs_for
 from polaris_nl.render.layout import wrapped
 from polaris_nl.render.log import event_rows
 from polaris_nl.robot_runs import run_on_robot
+from polaris_nl.run_logs import authored_in
 from polaris_nl.runs import RunOrder, resumable, run_simulated
 from polaris_nl.session import Session
 
@@ -61,11 +65,13 @@ def run(arguments: Namespace) -> int:
             arguments.log,
             privacy=privacy_of(arguments.leave_out),
             halt_without_log=arguments.halt_without_log,
+            before=_said(arguments.said, arguments.resume, program),
         )
         if arguments.resume is not None:
             point = resumable(arguments.resume, program.automaton, plan, session.planner)
             order = replace(order, resume=point)
         confirmed = profile is None or arguments.yes or agreed(session, profile)
+        order = replace(order, before=(*order.before, *session.past))
         listens = arguments.live or (profile is not None and sys.stdin.isatty())
         commands = Keyboard(session.understanding, program.automaton).commands if listens else tuple
         carry_out = run_simulated if profile is None else partial(run_on_robot, profile)
@@ -110,9 +116,20 @@ def agreed(session: Session, profile: Profile) -> bool:
     answer = sys.stdin.readline()
     if not answer:
         raise RunError("A robot moves only after a yes, and nobody answers; --yes gives it.")
-    if session.understanding.interpret(answer, session.snapshot.automaton)[0].command != "yes":
+    if session.say(answer.strip()).interpretation.command != "yes":
         raise RunError("Nothing was moved, since the answer wasn't a yes.")
     return True
+
+
+def _said(session: Path | None, resumed: Path | None, program: Program) -> tuple[Event, ...]:
+    """What led to the program, where a log of it is named; a run that goes on takes it from the one before."""
+    if session is not None:
+        return authored_in(session, program)
+    if resumed is None:
+        return ()
+    with suppress(LogError):  # Nothing was said before it, or the program was changed since.
+        return authored_in(resumed, program)
+    return ()
 
 
 def shower(silent: bool = False) -> Callable[[Event], None]:

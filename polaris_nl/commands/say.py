@@ -5,7 +5,8 @@ from __future__ import annotations
 import sys
 from argparse import Namespace
 
-from polaris_nl.commands.common import complain, print_json, print_text, session_of
+from polaris_nl.commands.common import complain, print_json, print_text
+from polaris_nl.commands.session_log import logged_session
 from polaris_nl.language.tokens import LONGEST
 from polaris_nl.snapshot import Answer, answer_json
 
@@ -15,7 +16,7 @@ def run(arguments: Namespace) -> int:
     utterance = arguments.utterance
     if utterance == "-":
         utterance = sys.stdin.read(LONGEST + 1)
-    with session_of(arguments) as session:
+    with logged_session(arguments) as (session, _):
         answer = session.say(utterance)
         value = answer_json(answer, session.program) if arguments.json else None
         if value is not None and arguments.explain:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal as OneOf
 
 from polaris_nl.automaton.automaton import START, Automaton
 from polaris_nl.execution.backend import Observation, Report
+from polaris_nl.execution.events import Heard
 from polaris_nl.execution.settings import RunSettings
 from polaris_nl.model.domain import Action
 from polaris_nl.model.formula import Literal
@@ -30,11 +31,17 @@ Outcome = OneOf["", "done", "halted", "stopped"]
 
 @dataclass(frozen=True, slots=True)
 class HumanCommand:
-    """What a person tells the run: `stop`, `pause`, `resume`, or `happened` with literals."""
+    """What a person tells the run: `stop`, `pause`, `resume`, or `happened` with literals.
+
+    Attributes:
+        said: the words that it was told with, where there were any; for the log, and nothing that a run
+            decides depends on them.
+    """
 
     kind: OneOf["stop", "pause", "resume", "happened"]
     literals: tuple[Literal, ...] = ()
     source: str = "keyboard"
+    said: Heard | None = field(default=None, compare=False)
 
 
 @dataclass(frozen=True, slots=True)

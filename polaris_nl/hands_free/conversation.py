@@ -9,6 +9,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Literal as OneOf
 
 from polaris_nl.execution.events import Event, Said
 from polaris_nl.execution.events import Heard as HeardEvent
@@ -84,7 +85,9 @@ class Conversation:
         """Stops or pauses at once, whatever else goes on; what to say to it."""
         runs = self._runs
         if runs is not None:
-            runs.command(HumanCommand("stop" if command == "stop" else "pause", source="voice"))
+            kind: OneOf["stop", "pause"] = "stop" if command == "stop" else "pause"
+            heard = HeardEvent(time=self.now(), utterance=command, source="voice")
+            runs.command(HumanCommand(kind, source="voice", said=heard))
         return "Stopped." if command == "stop" else "Paused."
 
     def take(
@@ -125,7 +128,7 @@ class Conversation:
     def _act(self, said: Utterance, text: str, heard: HeardEvent) -> Reply:
         runs = self._runs
         if runs is not None:
-            command = told(text, self.session)
+            command = told(text, self.session, heard)
             if command is not None:
                 self._sink(heard)
                 runs.command(command)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import queue
 import threading
+import time
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,11 +15,13 @@ from polaris_nl.execution.events import (
     Deviated,
     Event,
     Halted,
+    Heard,
     RunEnded,
     Waiting,
 )
 from polaris_nl.execution.state import HumanCommand
 from polaris_nl.language.understanding import Understanding
+from polaris_nl.logs.privacy import KEEP_ALL, Privacy
 from polaris_nl.model.errors import PolarisError
 from polaris_nl.runs import RunOrder, RunReport, run_simulated
 from polaris_nl.session import Session
@@ -84,6 +87,7 @@ class Runs:
         sink: is given the run's events, too.
         tell: says a sentence.
         log: the conversation's log, beside which each run gets one of its own; None for the log folder.
+        privacy: what the logs of runs leave out.
     """
 
     def __init__(
@@ -92,8 +96,10 @@ class Runs:
         sink: Callable[[Event], None],
         tell: Callable[[str], None],
         log: Path | None = None,
+        privacy: Privacy = KEEP_ALL,
     ) -> None:
         self._log = log
+        self._privacy = privacy
         self._conversation = conversation
         self._sink = sink
         self._tell = tell
@@ -104,7 +110,10 @@ class Runs:
         assert answer is not None, "a run follows from an answer"
         automaton, plan = answer.snapshot.automaton, answer.snapshot.plan
         assert plan is not None, "nobody says yes to a program without a plan"
-        order = RunOrder(automaton, plan, session.planner, live=True, log=self._path())
+        order = RunOrder(
+            automaton, plan, session.planner, live=True, log=self._path(), before=session.past,
+            privacy=self._privacy,
+        )  # fmt: skip
         self._conversation.running = Running(order, self._show, self._over)
 
     def _path(self) -> Path | None:
@@ -138,10 +147,10 @@ _TOLD = (CheckpointReached, Waiting, Deviated, Halted, RunEnded)
 """What a user without a screen wants to know of a run."""
 
 
-def told(text: str, session: Session) -> HumanCommand | None:
+def told(text: str, session: Session, heard: Heard) -> HumanCommand | None:
     """What words during a run tell it: pause, resume, stop, or a fact that has come true; or None."""
     found = command_in(text, session.understanding, session.snapshot.automaton)
-    return HumanCommand(found.kind, found.literals, "voice") if found else None
+    return HumanCommand(found.kind, found.literals, "voice", heard) if found else None
 
 
 def command_in(
@@ -154,14 +163,15 @@ def command_in(
         understanding: the language side.
         automaton: the program that runs; what it is about is what facts are about.
     """
+    said = Heard(time=time.time(), utterance=line.strip())
     meant, _ = understanding.interpret(line, automaton)
     if meant.command in ("stop", "quit"):
-        return HumanCommand("stop")
+        return HumanCommand("stop", said=said)
     if meant.command == "pause":
-        return HumanCommand("pause")
+        return HumanCommand("pause", said=said)
     if meant.command == "resume":
-        return HumanCommand("resume")
+        return HumanCommand("resume", said=said)
     # Facts are read as conditionals are: then "she acknowledges" means what the program waits for.
     asked, _ = understanding.interpret(f"what will you do if {line}", automaton)
     when = asked.query.when if asked.query is not None else ()
-    return HumanCommand("happened", when) if when else None
+    return HumanCommand("happened", when, said=said) if when else None

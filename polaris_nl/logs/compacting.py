@@ -34,6 +34,7 @@ from mcap.records import (
 )
 
 from polaris_nl.logs.framing import HEAD, MAGIC, MESSAGE, encoded, index_end
+from polaris_nl.logs.keeping import ABOUT
 from polaris_nl.logs.salvage import Gap, Piece
 
 CHUNK_BYTES = 1 << 20
@@ -68,6 +69,7 @@ class Compactor:
 
     Attributes:
         messages: how many it has so far.
+        about: what the log says about itself.
         gaps: what was missing in the source.
         complete: whether the source had its end.
     """
@@ -84,6 +86,7 @@ class Compactor:
         self._files: list[McapRecord] = []
         self._counts: Counter[int] = Counter()
         self._compress = zstandard.ZstdCompressor(level=LEVEL).compress
+        self.about: dict[str, str] = {}
         self.gaps: list[Gap] = []
         self.complete = False
 
@@ -172,6 +175,7 @@ class Compactor:
                 )
             )
         elif isinstance(record, Metadata):
+            self.about |= record.metadata if record.name == ABOUT else {}
             self._write(encoded(record))
             self._files.append(MetadataIndex(at, self._at - at, record.name))
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal as OneOf
 
@@ -21,9 +21,11 @@ from polaris_nl.execution.events import (
     RobotReported,
     RunEnded,
     RunStarted,
+    Skipped,
     StateChanged,
     Understood,
 )
+from polaris_nl.logs.spans import words_of
 
 Kind = OneOf[
     "robot", "refused", "gave-up", "no-answer", "too-slow", "not-as-reported", "undone", "moved",
@@ -38,12 +40,12 @@ ADVICE: Mapping[Kind, str] = {
     "no-answer": "The robot's side didn't react at all: see whether its programs are running.",
     "too-slow": "The robot was still at it when the time was over.",
     "not-as-reported": "The robot said that it had done it, but that isn't what was seen afterwards.",
-    "undone": (
-        "The program had brought this about before, and somebody has changed it since. If that is"
-        ' meant to happen, let the program wait for it: "wait until ...".'
-    ),
+    "undone": ("The program had brought this about before, and somebody has changed it since."),
     "moved": "Somebody or something else changed this; the plan counted on it.",
-    "unseen": "It wasn't seen any more, neither so nor otherwise: see what stands before the camera.",
+    "unseen": (
+        "It wasn't seen any more, neither so nor otherwise: see whether the robot's camera and its sense"
+        " of place work."
+    ),
     "nobody-came": "Nobody did what the program waited for. An else branch says what to do then.",
     "too-short": "It was seen, but never for long enough to count.",
     "doubtful": "What was seen of it contradicted itself, so it counted neither as so nor as not so.",
@@ -79,36 +81,65 @@ class Diagnosis:
     mended: bool = False
 
 
+_SHORT: Mapping[Kind, str] = {
+    "too-short": "not long enough", "doubtful": "contradictory", "moved": "things moved",
+    "undone": "work undone", "unseen": "not seen", "nobody-resumed": "not resumed",
+}  # fmt: skip
+
+
+def in_short(found: Diagnosis) -> str:
+    """A diagnosis in a word or two, for tables."""
+    if found.kind == "robot":
+        return f"robot {found.health}"
+    return _SHORT.get(found.kind, found.kind.replace("-", " "))
+
+
 def diagnoses(events: Sequence[Event]) -> list[Diagnosis]:
-    """All that went wrong, in order; what ended the run comes last."""
-    found = []
+    """All that went wrong, in order; what ended a run comes last of it."""
+    found: list[Diagnosis] = []
+    start = 0
     for at, event in enumerate(events):
-        before = _run_before(events, at)
-        match event:
-            case Halted():
-                kind, health = _of_halt(event, before)
-                found.append(_made(kind, event, event.reason, health))
-            case Deviated() if _mended(event, events[at + 1 :]):
-                kind = _of_deviation(event.expected, event.observed, before)
-                found.append(_made(kind, event, event.text, mended=True))
-            case RobotReported(report="failed") if not _halts(events[at + 1 :], event):
-                text = f"The robot gave an action up{_because(event.reason)}, and tried again."
-                found.append(_made("gave-up", event, text, mended=True))
-            case Failed():
-                found.append(_made("failure", event, event.text))
-            case Understood(outcome="refused"):
-                said = f'"{event.utterance}" was not understood: {event.text}'
-                found.append(_made("not-understood", event, said))
-            case RunEnded(outcome="stopped"):
-                found.append(_made("stopped", event, event.reason))
-    if _cut_off(events):
-        last = events[-1]
-        found.append(_made("no-end", last, "The run has no end in this log."))
-    return found
+        if isinstance(event, RunStarted):
+            found += _cut_off(events[start:at])
+            start = at
+        elif isinstance(event, _TELLING) and getattr(event, "report", "failed") == "failed":
+            found += _of_event(event, events[start:at], events[at + 1 :])
+    return found + _cut_off(events[start:])
+
+
+_TELLING = (Halted, Deviated, RobotReported, Failed, Understood, RunEnded)
+
+
+def _of_event(event: Event, before: Sequence[Event], later: Sequence[Event]) -> Iterator[Diagnosis]:
+    """What an event tells of, among those of its run before it and all after it."""
+    match event:
+        case Halted():
+            kind, health = _of_halt(event, before)
+            yield _made(kind, event, event.reason, health)
+        case Deviated() if _put_right(later):
+            kind = _of_deviation(event.expected, event.observed, before)
+            yield _made(kind, event, event.text, mended=_went_on(later))
+        case RobotReported(report="failed") if not _halts(later, event):
+            goal = next(
+                (e for e in reversed(before) if isinstance(e, GoalSent) and e.goal == event.goal),
+                None,
+            )
+            what = words_of(goal) if goal else "do that"
+            text = f"The robot couldn't {what}{_because(event.reason)}, and tried again."
+            yield _made("gave-up", event, text, mended=_went_on(later))
+        case Failed():
+            yield _made("failure", event, event.text)
+        case Understood(outcome="refused"):
+            said = f'"{event.utterance}" was not understood: {event.text}'
+            yield _made("not-understood", event, said)
+        case RunEnded(outcome="stopped"):
+            yield _made("stopped", event, _stopped(event, before))
 
 
 def _made(kind: Kind, event: Event, what: str, health: str = "", mended: bool = False) -> Diagnosis:
-    why = "" if mended and kind == "gave-up" else ADVICE[kind]
+    why = "" if isinstance(event, RobotReported) else ADVICE[kind]
+    if kind == "undone" and isinstance(event, Deviated):
+        why += ' If that is meant to happen, let the program wait for it: "wait until ...".'
     return Diagnosis(kind, event.id, what, why, health, mended)
 
 
@@ -181,7 +212,8 @@ def _of_wait(halted: Halted, before: Sequence[Event]) -> Kind:
     return "too-short" if any(wanted & set(e.added) for e in seen) else "nobody-came"
 
 
-def _mended(event: Deviated, later: Sequence[Event]) -> bool:
+def _put_right(later: Sequence[Event]) -> bool:
+    """Whether a deviation passed, or a way around it was found; whatever came then."""
     for following in later:
         if isinstance(following, Recovered | Replanned):
             return True
@@ -190,20 +222,41 @@ def _mended(event: Deviated, later: Sequence[Event]) -> bool:
     return False
 
 
+def _went_on(later: Sequence[Event]) -> bool:
+    """Whether a run got anything done before it came to its end."""
+    for following in later:
+        if isinstance(following, GoalConfirmed | Skipped | CheckpointReached):
+            return True
+        if isinstance(following, Halted | RunEnded | RunStarted):
+            return isinstance(following, RunEnded) and following.outcome == "done"
+    return False
+
+
+def _stopped(ended: RunEnded, before: Sequence[Event]) -> str:
+    stop = next(
+        (e for e in reversed(before) if isinstance(e, CommandGiven) and e.command == "stop"), None
+    )
+    return (
+        f"A person stopped the run {_FROM.get(stop.source, f'from {stop.source}')}."
+        if stop
+        else ended.reason
+    )
+
+
+_FROM = {"keyboard": "at the keyboard", "voice": "by voice", "": "at the keyboard"}
+
+
 def _halts(later: Sequence[Event], report: RobotReported) -> bool:
     """Whether a report ended the run at once."""
     return any(isinstance(e, Halted) and e.time == report.time for e in later[:2])
 
 
-def _cut_off(events: Sequence[Event]) -> bool:
-    started = any(isinstance(e, RunStarted) for e in events)
-    return started and not any(isinstance(e, RunEnded) for e in events)
-
-
-def _run_before(events: Sequence[Event], at: int) -> Sequence[Event]:
-    """The events of the same run before one."""
-    starts = [n for n in range(at) if isinstance(events[n], RunStarted)]
-    return events[starts[-1] if starts else 0 : at]
+def _cut_off(run: Sequence[Event]) -> list[Diagnosis]:
+    """That a run has no end in the log, where it has none."""
+    started = bool(run) and isinstance(run[0], RunStarted)
+    if not started or any(isinstance(e, RunEnded) for e in run):
+        return []
+    return [_made("no-end", run[-1], "The run has no end in this log.")]
 
 
 def _because(reason: str) -> str:

@@ -28,6 +28,7 @@ from polaris_nl.execution.events import Event, Stepped
 from polaris_nl.logs.compacting import is_story
 from polaris_nl.logs.finalising import content
 from polaris_nl.logs.framing import HEAD, MESSAGE, MESSAGE_HEAD
+from polaris_nl.logs.keeping import ABOUT, CUT_OFF
 from polaris_nl.logs.recovery import missing
 from polaris_nl.logs.salvage import Gap, Piece, index_records, pieces, unpacked
 from polaris_nl.logs.schema import event_of
@@ -163,7 +164,7 @@ class _Indexed(LogFile):
     def metadata(self) -> dict[str, str]:
         found: dict[str, str] = {}
         for entry in self._index:
-            if isinstance(entry, MetadataIndex) and entry.name == "polaris":
+            if isinstance(entry, MetadataIndex) and entry.name == ABOUT:
                 record = self._record(entry.offset, entry.length)
                 found |= record.metadata if isinstance(record, Metadata) else {}
         return found
@@ -240,10 +241,10 @@ class _Walked(LogFile):
                     topics[record.id] = record.topic, record.message_encoding == "json"
                 elif isinstance(record, Attachment):
                     self._attachments.append(record)
-                elif isinstance(record, Metadata) and record.name == "polaris":
+                elif isinstance(record, Metadata) and record.name == ABOUT:
                     self._metadata |= record.metadata
         self.complete = complete and not gaps
-        self.missing = missing(gaps, complete)
+        self.missing = missing(gaps, complete, self._metadata.get(CUT_OFF, ""))
 
     def __len__(self) -> int:
         return len(self._events)

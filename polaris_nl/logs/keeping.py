@@ -9,6 +9,11 @@ from typing import Any
 
 from polaris_nl.logs.privacy import KEEP_ALL, Privacy
 
+ABOUT, CUT_OFF = "polaris", "cut_off"
+"""The metadata record of what a log says about itself, and its entry of why the log has no end."""
+PROGRAM_TEXT = "program.txt"
+"""The attachment that tells a run's program in words."""
+
 
 @dataclass(frozen=True, slots=True)
 class RawKind:
@@ -47,10 +52,10 @@ def attachments_of(
 ) -> dict[str, str]:
     """The attachments that make a log explain itself: program, domain, world and settings as text."""
     texts = {
-        "program.polaris.json": json.dumps(program, indent=2),
+        "program.polaris.json": json.dumps(program, indent=2, ensure_ascii=False),
         "domain.pddl": domain,
         "world.yaml": world,
     }
     if settings is not None:
-        texts["settings.json"] = json.dumps(settings, indent=2)
+        texts["settings.json"] = json.dumps(settings, indent=2, ensure_ascii=False)
     return texts

@@ -67,6 +67,21 @@ def read_log(path: Path, inputs: bool = False) -> Log:
     return log
 
 
+def read_page(path: Path, start: int, stop: int) -> tuple[list[Event], int]:
+    """Some events of a log of any length, over all its parts, and how many events there are.
+
+    Raises:
+        LogError: a file can't be read, or is no log.
+    """
+    found: list[Event] = []
+    count = 0
+    for part in parts_of(path):
+        with open_log(part) as file:
+            found += file.events(max(start - count, 0), max(stop - count, 0))
+            count += len(file)
+    return found, count
+
+
 def filtered(
     events: Sequence[Event], *tests: Callable[[Event], bool]
 ) -> Iterator[tuple[int, Event]]:

@@ -14,7 +14,7 @@ from polaris_nl import __version__
 from polaris_nl.execution.events import Event, Stepped
 from polaris_nl.logs import rosout
 from polaris_nl.logs.journal import Journal
-from polaris_nl.logs.keeping import LogSettings, RawKind
+from polaris_nl.logs.keeping import ABOUT, LogSettings, RawKind
 from polaris_nl.logs.paths import part_path
 from polaris_nl.logs.privacy import KEEP_ALL
 from polaris_nl.logs.schema import names_of, schema_of
@@ -119,7 +119,7 @@ class Records:
             about["follows"] = part_path(self.path, self._part - 1).name
         if self._settings.privacy is not KEEP_ALL:
             about["left_out"] = self._settings.privacy.words
-        journal.metadata("polaris", about)
+        journal.metadata(ABOUT, about)
         for name, text in self.attachments.items():
             kind = "application/json" if name.endswith(".json") else "text/plain"
             journal.attach(name, kind, text.encode())

@@ -9,10 +9,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from polaris_nl.logs.finalising import compact
+from polaris_nl.logs.keeping import CUT_OFF
 from polaris_nl.logs.salvage import Gap
 from polaris_nl.model.errors import LogError
 from polaris_nl.model.text import listed
 
+CUT = "the program was cut off while writing"
 _SMALL = 4096
 """Fewer bytes than this at the end are one record that was being written."""
 
@@ -53,15 +55,17 @@ def recover(path: Path, target: Path | None = None) -> Recovery:
             f"Can't write {target}: {error.strerror}. Make room, or choose another place."
         ) from error
     whole = found.complete and not found.gaps
-    return Recovery(target, found.messages, whole, missing(found.gaps, found.complete))
+    said = missing(found.gaps, found.complete, found.about.get(CUT_OFF, ""))
+    return Recovery(target, found.messages, whole, said)
 
 
-def missing(gaps: list[Gap], complete: bool) -> str:
+def missing(gaps: list[Gap], complete: bool, cut_off: str = "") -> str:
     """What is missing in a log, as a sentence; "" where nothing is.
 
     Args:
         gaps: what no records could be made of.
         complete: whether the log has its end.
+        cut_off: why it has none, where that is known.
     """
     inside = [gap for gap in gaps if not gap.at_end]
     parts = []
@@ -74,7 +78,8 @@ def missing(gaps: list[Gap], complete: bool) -> str:
     if not complete:
         tail = sum(gap.length for gap in gaps if gap.at_end)
         lost = f"; its last {_size(tail)} make no whole message" if tail else ""
-        parts.append(f"It has no end, as the program was cut off while writing{lost}.")
+        why = f"it couldn't be written any more ({cut_off})" if cut_off else CUT
+        parts.append(f"It has no end, as {why}{lost}.")
     return " ".join(parts)
 
 

@@ -13,7 +13,8 @@ from polaris_nl.logs import rosout
 from polaris_nl.logs.compacting import Compactor
 from polaris_nl.logs.finalising import content, written
 from polaris_nl.logs.framing import HEAD, MESSAGE, MESSAGE_HEAD, encoded, message
-from polaris_nl.logs.privacy import LEFT_OUT, Privacy
+from polaris_nl.logs.paths import part_path, parts_of
+from polaris_nl.logs.privacy import Privacy
 from polaris_nl.logs.salvage import Gap, Piece, pieces
 from polaris_nl.logs.schema import event_json, event_of
 from polaris_nl.model.errors import LogError
@@ -39,16 +40,25 @@ def redact(path: Path, target: Path, privacy: Privacy) -> Redacted:
     """Makes a copy of a log without what isn't to be kept.
 
     Args:
-        path: the log; it stays as it is.
-        target: the copy; it must not exist.
+        path: the log, with the parts in which it goes on; they stay as they are.
+        target: the copy, or its first part; it must not exist.
         privacy: what isn't kept.
 
     Raises:
         LogError: the log can't be read, the copy can't be written, or a word to be left out is
             still found in its bytes (the copy is removed then).
     """
-    if target.exists():
-        raise LogError(f"There is a file {target} already; choose another name with --out.")
+    parts = parts_of(path)
+    targets = [part_path(target, number) for number in range(1, len(parts) + 1)]
+    for one in targets:
+        if one.exists():
+            raise LogError(f"There is a file {one} already; choose another name with --out.")
+    done = [_redact(*pair, privacy) for pair in zip(parts, targets, strict=True)]
+    return Redacted(target, sum(d.changed for d in done), sum(d.left_out for d in done))
+
+
+def _redact(path: Path, target: Path, privacy: Privacy) -> Redacted:
+    """The same for one file."""
     redaction = _Redaction(privacy)
     try:
         with content(path) as data, written(target) as out:
@@ -85,7 +95,6 @@ class _Redaction:
     def __init__(self, privacy: Privacy) -> None:
         self._privacy = privacy
         self._topics: dict[int, str] = {}
-        self._rosout = ""
         self.changed = self.left_out = 0
 
     def over(self, found: Iterable[Piece | Gap]) -> Iterator[Piece | Gap]:
@@ -113,7 +122,8 @@ class _Redaction:
                 return piece
             if self._privacy.in_bytes(record.data) or self._privacy.in_bytes(record.name.encode()):
                 self.changed += 1
-                record.data = self._blackened(record.data)
+                text = record.data.decode("utf-8", "replace")
+                record.data = self._privacy.of_text(record.name, text).encode()
                 record.name = self._privacy.of_value(record.name)
                 return _piece(encoded(record))
         elif isinstance(record, Metadata):
@@ -142,30 +152,20 @@ class _Redaction:
                 return None
             return piece
         kept = self._privacy.of_event(event)
-        self._rosout = kept.text
         new = json.dumps(event_json(kept), ensure_ascii=False, separators=(",", ":"))
         if kept == event:
             return piece
         self.changed += 1
         return _piece(message(channel, sequence, time, new.encode("utf-8", "backslashreplace")))
 
-    def _said(
-        self, piece: Piece, channel: int, sequence: int, time: int, data: bytes
-    ) -> Piece | None:
-        """A line for ROS tools: it says what the event before it says."""
+    def _said(self, piece: Piece, channel: int, sequence: int, time: int, data: bytes) -> Piece:
+        """A line for ROS tools."""
         level, text, kind = rosout.parsed(data)
-        if text == self._rosout:
+        kept = self._privacy.of_line(kind, text)
+        if kept == text:
             return piece
         self.changed += 1
-        return _piece(
-            message(
-                channel, sequence, time, rosout.encoded(time, level, self._rosout or LEFT_OUT, kind)
-            )
-        )
-
-    def _blackened(self, data: bytes) -> bytes:
-        text: str = self._privacy.of_value(data.decode("utf-8", "replace"))
-        return text.encode()
+        return _piece(message(channel, sequence, time, rosout.encoded(time, level, kept, kind)))
 
 
 def _piece(record: bytes) -> Piece:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -26,6 +26,8 @@ from polaris_nl.execution.events import (
     Waiting,
 )
 from polaris_nl.logs.filters import matcher as matcher
+from polaris_nl.logs.sayings import said
+from polaris_nl.model.wording import Wording
 
 PROBLEMS = (Deviated, Halted, Failed)
 
@@ -42,6 +44,7 @@ class Summary:
         checkpoints: the names reached, in order.
         goals_sent, goals_done: how many actions were sent as goals, and were perceived as done.
         problems: the texts of deviations, halts and failures, with their event numbers.
+        transitions: what was decided where there was a choice, in words.
         waited: what was waited for.
         started, seconds: when the run started, and how long it took.
     """
@@ -79,7 +82,7 @@ def summary(events: Sequence[Event]) -> Summary:
         outcome=ended.outcome if ended else "",
         reason=ended.reason if ended else "",
         checkpoints=tuple(e.name for e in events if isinstance(e, CheckpointReached)),
-        transitions=tuple(e.text for e in events if isinstance(e, TransitionTaken) and e.when),
+        transitions=tuple(_decisions(events)),
         goals_sent=sum(isinstance(e, GoalSent) for e in events),
         goals_done=sum(isinstance(e, GoalConfirmed) for e in events),
         problems=tuple(
@@ -93,47 +96,72 @@ def summary(events: Sequence[Event]) -> Summary:
     )
 
 
+def _decisions(events: Sequence[Event]) -> Iterator[str]:
+    """The transitions taken where there was a choice, in words."""
+    choices: set[str] = set()
+    for event in events:
+        if isinstance(event, RunStarted):
+            choices = {t["from"] for t in event.program.get("transitions", ()) if t.get("when")}
+        elif isinstance(event, TransitionTaken):
+            if event.when:
+                yield event.text
+            elif event.source in choices:
+                yield f"{event.text.rstrip('.')}, the else branch."
+
+
 def next_problem(events: Sequence[Event], after: int = 0) -> int | None:
     """The number of the first problem after an event, or None."""
     found = (e.id or n for n, e in enumerate(events, 1) if isinstance(e, PROBLEMS))
     return next((n for n in found if n > after), None)
 
 
-def story(events: Sequence[Event]) -> list[str]:
-    """A run as comparable lines: what was done and decided, without times."""
+def story(events: Sequence[Event]) -> Sequence[tuple[str, Event]]:
+    """A run as comparable lines: what was done and decided, without words and times, each with its event."""
     lines = []
     for event in events:
-        if isinstance(event, GoalSent):
-            lines.append(f"goal {event.action}")
-        elif isinstance(event, Skipped):
-            lines.append(f"saved {' '.join(event.actions)}")
-        elif isinstance(event, Replanned):
-            lines.append(f"planned anew: {' '.join(event.after)}")
-        elif isinstance(event, TransitionTaken):
-            lines.append(
-                f"transition {event.source} to {event.target} {' '.join(event.when)}".rstrip()
-            )
-        elif isinstance(event, CheckpointReached):
-            lines.append(f"checkpoint {event.name}")
-        elif isinstance(event, Deviated):
-            lines.append(
-                f"deviation: expected {' '.join(event.expected)}, saw {' '.join(event.observed)}"
-            )
-        elif isinstance(event, RunEnded):
-            lines.append(f"end: {event.outcome}. {event.reason}")
+        match event:
+            case GoalSent():
+                line = f"goal {event.action}"
+            case Skipped():
+                line = f"saved {' '.join(event.actions)}"
+            case Replanned():
+                line = f"planned anew: {' '.join(event.after)}"
+            case TransitionTaken():
+                line = (
+                    f"transition {event.source} to {event.target} {' '.join(event.when)}".rstrip()
+                )
+            case CheckpointReached():
+                line = f"checkpoint {event.name}"
+            case Deviated():
+                line = f"deviation: expected {' '.join(event.expected)}, saw {' '.join(event.observed)}"
+            case RunEnded():
+                line = f"end: {event.outcome}. {event.reason}"
+            case _:
+                continue
+        lines.append((line, event))
     return lines
 
 
-def rows(events: Sequence[Event]) -> list[dict[str, Any]]:
-    """Events as flat rows for export."""
+def rows(
+    events: Sequence[Event], start: float = 0.0, wording: Wording | None = None
+) -> list[dict[str, Any]]:
+    """Events as flat rows for export.
+
+    Args:
+        events: to be exported.
+        start: what `seconds` are counted from, in seconds since the epoch.
+        wording: how facts are put into words.
+    """
     return [
         {
             "number": event.id or number,
             "time": event.time,
+            "seconds": round(event.time - start, 3),
             "kind": type(event).__name__,
             "topic": event.topic,
             "severity": event.severity,
-            "text": event.text,
+            "text": said(event, wording),
+            "causes": " ".join(map(str, event.causes)),
         }
         for number, event in enumerate(events, 1)
     ]

@@ -15,6 +15,7 @@ from polaris_nl.execution.events import (
     RobotReported,
     StateChanged,
 )
+from polaris_nl.model.domain import Action
 from polaris_nl.model.errors import PolarisError
 from polaris_nl.model.formula import parse_literal
 from polaris_nl.model.text import capital, listed, sentence
@@ -45,7 +46,7 @@ def said(event: Event, wording: Wording | None = None) -> str:
             return f'"{event.utterance}"'
         case Interpreted():
             best = next((str(r.get("text", "")) for r in event.readings), "")
-            return f"Taken as: {best or event.outcome}."
+            return sentence(f"Taken as: {best or event.outcome}")
         case Planned():
             return f"Planned: {_plan_words(event)}."
         case StateChanged():
@@ -99,15 +100,33 @@ def fact(text: str, wording: Wording | None) -> str:
         return text
 
 
+def action_words(text: str, wording: Wording | None) -> str:
+    """An action as an imperative; as it is written where there are no words for it."""
+    name, *arguments = text.strip("()").split() or [""]
+    if wording is None or not name:
+        return text
+    try:
+        return wording.action(Action(name, tuple(arguments)))
+    except (PolarisError, KeyError, ValueError, IndexError):
+        return text
+
+
+_STATUS = {
+    "partial": "only a part of it, ",
+    "underspecified": "nothing, since it is ambiguous where the program goes on",
+    "invalid": "nothing, since the program isn't valid",
+    "undecided": "only what could be decided in time, ",
+}
+
+
 def _plan_words(event: Planned) -> str:
-    branches = event.plan.get("branches", ())
-    counts = [int(b.get("actions", 0)) for b in branches]
-    if not counts:
-        return event.status
+    counts = [int(b.get("actions", 0)) for b in event.plan.get("branches", ())]
+    status = _STATUS.get(event.status, "")
+    if not counts or event.status in ("underspecified", "invalid"):
+        return status.rstrip(", ") or "nothing"
     actions = f"{max(counts)} action{'' if max(counts) == 1 else 's'}"
-    return f"{event.status}, {actions}" + (
-        f" on the longest of {len(counts)} branches" if len(counts) > 1 else ""
-    )
+    more = f" on the longest of {len(counts)} branches" if len(counts) > 1 else ""
+    return f"{status}{actions}{more}"
 
 
 def clause(event: Event, wording: Wording | None = None) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal as OneOf
 
@@ -61,8 +61,9 @@ class _Open:
 
 
 class _Spans:
-    def __init__(self, start: float) -> None:
+    def __init__(self, start: float, names: Mapping[str, str]) -> None:
         self.start = start
+        self.names = names
         self.found: list[Span] = []
         self._open: dict[SpanKind, _Open] = {}
 
@@ -96,7 +97,7 @@ def spans(events: Sequence[Event]) -> list[Span]:
     if not starts:
         return []
     run = events[starts[-1] :]
-    found = _Spans(run[0].time)
+    found = _Spans(run[0].time, _names(run[0]))
     for event in run:
         _take(found, event)
         if isinstance(event, RunEnded):
@@ -106,12 +107,18 @@ def spans(events: Sequence[Event]) -> list[Span]:
     return sorted(found.found, key=lambda s: (s.start, order[s.kind]))
 
 
+def _names(started: Event) -> dict[str, str]:
+    """The checkpoints' names by their ids."""
+    program = started.program if isinstance(started, RunStarted) else {}
+    return {c["id"]: c["name"] for c in program.get("checkpoints", ())}
+
+
 def _take(found: _Spans, event: Event) -> None:
     time = event.time
     match event:
         case TransitionTaken():
             found.end("wait", time, True)
-            found.begin("segment", event.target, event)
+            found.begin("segment", found.names.get(event.target, event.target), event)
         case CheckpointReached():
             found.end("segment", time, True, event.name)
         case GoalSent():

@@ -9,9 +9,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from polaris_nl.execution.events import Event
-from polaris_nl.logs.diagnosis import diagnoses
+from polaris_nl.logs.diagnosis import diagnoses, in_short
 from polaris_nl.logs.reader import read_log
 from polaris_nl.logs.review import summary
+from polaris_nl.logs.runs_in import runs_in
 from polaris_nl.logs.spans import Span, spans
 from polaris_nl.model.errors import LogError
 
@@ -41,7 +42,7 @@ class Entry:
 
     Attributes:
         started: when, in seconds since the epoch; 0 where it is empty.
-        problem: the first thing that ended or disturbed the run, or "".
+        problem: what ended the run, or disturbed it last, or ""; kind: in a word or two.
         error: why the file can't be read, or "".
     """
 
@@ -52,6 +53,7 @@ class Entry:
     outcome: str = ""
     checkpoints: int = 0
     problem: str = ""
+    kind: str = ""
     complete: bool = False
     error: str = ""
 
@@ -59,8 +61,8 @@ class Entry:
 def durations(logs: Iterable[Sequence[Event]]) -> list[Durations]:
     """How long actions, waits and deviations took over many logs, by operator, the commonest first."""
     by_kind: dict[str, list[Span]] = defaultdict(list)
-    for events in logs:
-        for span in spans(events):
+    for run in (run for events in logs for run in runs_in(events)):
+        for span in spans(run):
             if span.kind == "action":
                 by_kind[span.action.strip("()").partition(" ")[0]].append(span)
             elif span.kind != "segment":
@@ -115,5 +117,6 @@ def entry(path: Path) -> Entry:
         short.outcome,
         len(short.checkpoints),
         found[-1].what if found else "",
+        in_short(found[-1]) if found else "",
         log.complete,
     )

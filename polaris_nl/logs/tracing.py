@@ -157,8 +157,9 @@ class Tracer:
             case PersonActed() | CommandGiven():
                 told = event.effect if isinstance(event, PersonActed) else event.literals
                 self._changed |= dict.fromkeys(told, number)
-                if isinstance(event, CommandGiven) and event.command == "stop":
-                    self._stop = number
+                if isinstance(event, CommandGiven):
+                    self._words = 0  # The words before it were this command.
+                    self._stop = number if event.command == "stop" else self._stop
 
     def _authors(self, event: Edited, number: int) -> None:
         """Keeps who made each checkpoint and transition what it is."""

@@ -30,6 +30,7 @@ from polaris_nl.execution.events import (
 )
 from polaris_nl.logs.finalising import finalise
 from polaris_nl.logs.journal import Journal
+from polaris_nl.logs.keeping import ABOUT, CUT_OFF
 from polaris_nl.logs.keeping import LogSettings as LogSettings
 from polaris_nl.logs.keeping import RawKind as RawKind
 from polaris_nl.logs.keeping import attachments_of as attachments_of
@@ -185,11 +186,11 @@ class LogWriter:
         if self._closed or self.failure:
             return False
         room = self._settings.queue // 2 if often else self._settings.queue
-        if len(self._backlog) < room:
-            self._backlog.append(work)
-        else:
-            self._dropped[topic] += 1
         with self._wake:
+            if len(self._backlog) < room:
+                self._backlog.append(work)
+            else:
+                self._dropped[topic] += 1
             self._wake.notify()
         return False
 
@@ -200,6 +201,10 @@ class LogWriter:
             work()
         except OSError as error:
             self._fail(error)
+            with contextlib.suppress(
+                OSError
+            ):  # Where a few bytes fit still, the file says it itself.
+                self._records.journal.metadata(ABOUT, {CUT_OFF: error.strerror or str(error)})
             return False
         return True
 
@@ -255,8 +260,9 @@ class LogWriter:
                 self._done(self._backlog[0])
                 self._backlog.popleft()
         if self._dropped and not self.failure:
-            with self._lock:
+            with self._wake:
                 dropped, self._dropped = self._dropped, Counter()
+            with self._lock:
                 words = ", ".join(f"{n} of {topic}" for topic, n in sorted(dropped.items()))
                 self.lost = f"The disk was too slow for a while; missing in the log: {words}."
                 missing = Failed(time=self._records.time, text=self.lost, what="log")

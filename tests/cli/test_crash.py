@@ -10,9 +10,11 @@ from pathlib import Path
 
 from rosbags.highlevel import AnyReader
 
-from polaris_nl.execution.events import GoalConfirmed
+from polaris_nl.execution.events import GoalConfirmed, Heard, RunEnded
+from polaris_nl.logs.chain import origin
 from polaris_nl.logs.reader import read_log
 from tests.cli.conftest import ROOT, Command
+from tests.replayed_logs import differences
 
 SHOWN = 6
 
@@ -48,6 +50,7 @@ def test_killing_a_run_loses_no_event_that_was_written(
     texts = [event.text for event in read.events]
     for line in shown:
         assert any(line.endswith(text) for text in texts if text), line
+    assert differences(log) == [], "a replay of what there is decides the same"
     assert command("review", log).code == 1
     assert command("review", log, "--recover").code == 0
     mended = log.with_name("killed.recovered.mcap")
@@ -119,4 +122,9 @@ def test_stop_typed_during_a_run_ends_it(lunch: Path, tmp_path: Path) -> None:
     out, _ = child.communicate(timeout=60)
     assert child.returncode == 1
     assert "You stopped the run." in out
-    assert read_log(log).complete
+    read = read_log(log)
+    assert read.complete
+    ended = next(e for e in read.events if isinstance(e, RunEnded))
+    words = [e.utterance for e in origin(read.events, ended.id) if isinstance(e, Heard)]
+    assert words == ["stop"]
+    assert differences(log) == []

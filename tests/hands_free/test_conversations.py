@@ -10,6 +10,7 @@ import pytest
 from polaris_nl.execution.events import CommandGiven, Heard, RunEnded, RunStarted, Said, Understood
 from polaris_nl.hands_free.recording import kept
 from polaris_nl.hands_free.weight import weigher
+from polaris_nl.logs.chain import chain
 from polaris_nl.logs.reader import read_log
 from polaris_nl.speech.ears import EarMaker
 from polaris_nl.speech.modes import Attention
@@ -81,7 +82,12 @@ def test_a_paper_program_is_authored_corrected_run_and_stopped_by_voice(
     aloud = [e.text for e in log.events if isinstance(e, Said)]
     assert aloud == [r.text for r in face.heard]
     assert all(len(text) <= 400 for text in aloud)
-    assert (tmp_path / "talk-run-1.mcap").is_file()
+    of_run = read_log(tmp_path / "talk-run-1.mcap").events
+    started = next(e for e in of_run if isinstance(e, RunStarted))
+    stop = next(e for e in of_run if isinstance(e, CommandGiven))
+    assert [e.utterance for e in of_run if isinstance(e, Heard)] == list(said)
+    assert [e.utterance for e in chain(of_run, stop.id) if isinstance(e, Heard)] == ["stop"]
+    assert "yes" in [e.utterance for e in chain(of_run, started.id) if isinstance(e, Heard)]
 
 
 def test_the_sound_in_a_log_is_heard_again_bit_for_bit(maker: EarMaker, tmp_path: Path) -> None:

@@ -140,11 +140,13 @@ def test_a_cut_at_any_byte_never_raises_and_loses_only_what_is_cut(tmp_path: Pat
     whole = path.read_bytes()
     log.close()
     cut = tmp_path / "cut.mcap"
-    for length in range(len(whole) + 1):
-        cut.write_bytes(whole[:length])
+    cut.write_bytes(whole)
+    for length in reversed(range(len(whole) + 1)):
+        os.truncate(cut, length)  # Much quicker than writing it anew.
         found = read_log(cut).events
         written = sum(end <= length for end in ends)
         assert found[:written] == EXAMPLE[:written]
+    cut.write_bytes(whole)
     recovered = recover(cut)
     assert not recovered.complete
     assert read_log(recovered.path).events == EXAMPLE
@@ -232,6 +234,7 @@ def test_a_log_is_summed_up() -> None:
     assert [n for n, _ in found.problems] == [4]
     assert next_problem(EXAMPLE) == 4
     assert next_problem(EXAMPLE, 4) is None
-    assert story(EXAMPLE) == ["goal (move hall home)", "checkpoint home", "end: halted. so"]
+    lines = [line for line, _ in story(EXAMPLE)]
+    assert lines == ["goal (move hall home)", "checkpoint home", "end: halted. so"]
     assert [e for e in EXAMPLE if matcher(["severity=warning"])(e)] == [EXAMPLE[3]]
     assert [e for e in EXAMPLE if matcher(["topic=goal", "home"])(e)] == [EXAMPLE[1]]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import random
 import subprocess
 import sys
@@ -34,8 +35,9 @@ def journal_of(path: Path, count: int) -> bytes:
 def test_a_cut_at_any_byte_of_a_finished_log_never_raises(tmp_path: Path) -> None:
     whole = write(tmp_path / "a.mcap", goals(5)).read_bytes()
     cut = tmp_path / "cut.mcap"
-    for length in range(len(whole)):
-        cut.write_bytes(whole[:length])
+    cut.write_bytes(whole)
+    for length in reversed(range(len(whole))):
+        os.truncate(cut, length)  # Much quicker than writing it anew.
         log = read_log(cut)
         assert not log.complete
         assert log.missing or not length

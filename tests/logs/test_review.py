@@ -5,7 +5,9 @@ from __future__ import annotations
 import csv
 import io
 import json
+import re
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -26,9 +28,11 @@ from polaris_nl.logs.asking import ask
 from polaris_nl.logs.chain import chain
 from polaris_nl.logs.expected import beliefs_at, expectations
 from polaris_nl.logs.filters import check, matcher
+from polaris_nl.logs.paths import parts_of
 from polaris_nl.logs.reader import filtered, read_log
 from polaris_nl.logs.sayings import said
 from polaris_nl.logs.spans import spans
+from polaris_nl.logs.writer import LogSettings
 from polaris_nl.model.errors import UsageError
 from polaris_nl.render.glyphs import ASCII, UNICODE
 from polaris_nl.render.run_timeline import timeline_rows
@@ -36,6 +40,7 @@ from polaris_nl.runs import RunOrder, run_simulated
 from polaris_nl.session import Session
 from tests.execution.story import Case, case
 from tests.logs.conftest import Carrying
+from tests.logs.decoding import decoded
 from tests.logs.writing import goal, goals, write
 
 WIDTH = 80
@@ -118,6 +123,12 @@ def test_the_whole_chain_has_every_step(told: Path) -> None:
     last = events[-2]
     assert len(chain(events, last.id, whole=True)) > len(chain(events, last.id))
     assert chain(events, 10_000) == []
+
+
+def test_others_decode_every_channel_of_a_session_and_its_run(told: Path) -> None:
+    found = decoded(told)
+    assert {"/rosout", "/polaris/heard", "/polaris/edited", "/polaris/inputs"} <= set(found)
+    assert len(found) >= 16
 
 
 # Filters
@@ -242,13 +253,91 @@ def test_why_the_else_branch_was_taken(otherwise: Path) -> None:
     ("name", "words"),
     [
         ("run-stop pressed", "run-stop button is pressed"),
-        ("forgotten wait", "let the program wait for it"),
+        ("forgotten wait", "let the program wait until the cup is on the drying rack"),
         ("nobody answers", "Nobody did what the program waited for"),
         ("executor killed in the middle of a goal", "ends in the middle of the run"),
     ],
 )
 def test_why_it_halted(name: str, words: str, scenario_log: Carrying, tmp_path: Path) -> None:
     assert words in answer(scenario_log(name, tmp_path), "why did it halt?")
+
+
+def test_why_something_was_not_done(
+    otherwise: Path, scenario_log: Carrying, tmp_path: Path
+) -> None:
+    other = answer(otherwise, "Why didn't it bring the tray?")
+    assert 'From "alerted" it went another way: On to home. That is the else branch' in other
+    assert answer(otherwise, "why did it go home?").startswith("I go home.")
+    over = answer(scenario_log("forgotten wait", tmp_path), "why didn't it put the plate away?")
+    assert "The run was over before." in over
+    assert "the cup is on the drying rack" in over
+    with pytest.raises(UsageError, match="fits"):
+        answer(otherwise, "why didn't it water the flowers?")
+    assert answer(otherwise, "why did it not go to the hall?").startswith("It did.")
+
+
+def test_more_questions(otherwise: Path, scenario_log: Carrying, tmp_path: Path) -> None:
+    halted = scenario_log("forgotten wait", tmp_path)
+    assert "(at cup countertop)" in answer(halted, "what did it expect?")
+    assert answer(halted, "did it finish?").startswith("No: it was halted.")
+    assert answer(otherwise, "did it finish?").startswith("Yes: it was done.")
+    assert re.match(r"At 31\.\d s, that is at \d", answer(halted, "when did it reach fetched?"))
+    assert answer(halted, "why did it stop waiting?") == "It waited for nobody."
+    assert answer(halted, "why is the cup on the drying rack?").startswith("Seen: ")
+    turns = ask(read_log(halted).events, "what happened?").chain
+    assert isinstance(turns[-2], Halted)
+    assert any(isinstance(e, PersonActed) for e in turns)
+
+
+def test_a_session_with_two_runs(
+    told: Path, otherwise: Path, tmp_path: Path, review: Review
+) -> None:
+    path = tmp_path / "session.mcap"
+    events = [*read_log(told).events, *read_log(otherwise).events]
+    write(path, [replace(e, time=float(n)) for n, e in enumerate(events)])
+    out = review(path)[1]
+    assert re.search(r"^Run 1 of 2, from \d", out, re.MULTILINE)
+    assert out.count("End: done") == 2
+    assert out.index("on to fetched") < out.index("Run 2 of 2") < out.index("the else branch")
+    question = "why did it take the else branch"
+    assert "That is the else branch" in answer(path, question)
+    assert "no else branch" in answer(path, f"{question} in the first run?")
+    assert "That is the else branch" in answer(path, f"{question} in run 2?")
+    both, one = (
+        {d["what"]: d["count"] for d in json.loads(review(x, "--durations", "--json")[1])}
+        for x in (path, told)
+    )
+    assert both["move"] > one["move"]
+    first = re.findall(r"^(?:alerted|fetched|home) ", review(path, "--timeline")[1], re.MULTILINE)
+    assert first == ["alerted ", "fetched ", "alerted ", "home "]
+
+
+def test_what_the_run_was_told_is_told_with_the_time(
+    scenario_log: Carrying, tmp_path: Path, review: Review
+) -> None:
+    out = review(scenario_log("an answer by word of mouth", tmp_path))[1]
+    assert "Told: that lunch has been dismissed, at 11.3 s (voice)." in out.splitlines()
+    assert "Decided: Lunch is dismissed: on to cancelled." in out.splitlines()
+
+
+def test_a_person_who_stops_a_run_is_no_problem(
+    scenario_log: Carrying, tmp_path: Path, review: Review
+) -> None:
+    out = review(scenario_log("cancel ignored", tmp_path))[1]
+    assert "A person stopped the run at the keyboard." in out
+    assert "Problem" not in out
+
+
+def test_the_else_branch_is_a_decision(otherwise: Path, review: Review) -> None:
+    out = review(otherwise)[1]
+    assert "Decided: On to home, the else branch." in out.splitlines()
+    assert "Program: Tell the resident that lunch is ready." in out
+
+
+def test_events_are_listed_with_what_was_said(told: Path, review: Review) -> None:
+    out = review(told, "--events")[1]
+    assert 'Typed: "Tell the resident that lunch is ready."' in " ".join(out.split())
+    assert "The robot says that it has done it." in out
 
 
 def test_why_it_went_another_way(scenario_log: Carrying, tmp_path: Path) -> None:
@@ -267,7 +356,7 @@ def test_the_summary_tells_the_whole_story(told: Path, review: Review) -> None:
     assert lines[0].startswith("lunch.mcap; ")
     assert 'Typed: "Tell the resident that lunch is ready."' in lines
     assert any(line.startswith("Answer: Once lunch is acknowledged") for line in lines)
-    assert any(line.startswith("Planned: ok") for line in lines)
+    assert any(line.startswith("Planned: 10 actions") for line in lines)
     assert any(line.startswith("Decided: Lunch is acknowledged") for line in lines)
     assert any(line.startswith("End: done") for line in lines)
     assert len(lines) <= 24
@@ -296,6 +385,8 @@ def test_exports(told: Path, review: Review) -> None:
     events = read_log(told).events
     table = list(csv.DictReader(io.StringIO(review(told, "--export", "csv")[1])))
     assert [int(row["number"]) for row in table] == [e.id for e in events]
+    assert table[0]["text"] == '"Tell the resident that lunch is ready."'
+    assert [row["causes"].split() for row in table] == [list(map(str, e.causes)) for e in events]
     lines = review(told, "--export", "jsonl", "--filter", "topic=goal-sent")[1].splitlines()
     sent = [json.loads(line)["action"] for line in lines]
     assert sent == [e.action for e in events if isinstance(e, GoalSent)]
@@ -322,8 +413,13 @@ def test_two_runs_compared(told: Path, otherwise: Path, review: Review) -> None:
     assert review(told, "--diff", told)[0] == 0
     code, out = review(told, "--diff", otherwise)
     assert code == 1
-    assert "-checkpoint fetched" in out
-    assert "+checkpoint home" in out
+    lines = [(line[0], line[14:]) for line in out.splitlines()]
+    assert ("-", "Reached fetched.") in lines
+    assert ("+", "Reached home.") in lines
+    found = json.loads(review(told, "--diff", otherwise, "--json")[1])
+    assert {"-checkpoint fetched", "+checkpoint home"} <= {
+        x["sign"] + x["line"] for x in found["diff"]
+    }
 
 
 def test_a_folder_of_logs_is_a_table(
@@ -337,7 +433,7 @@ def test_a_folder_of_logs_is_a_table(
     assert lines[0].split() == ["log", "when", "s", "end", "problem"]
     assert "done" in lines[1]
     assert "halted" in lines[2]
-    assert "I waited 6 seconds" in lines[2]
+    assert lines[2].endswith("nobody came")
     (tmp_path / "zz.mcap").write_bytes(b"no log at all")
     code, out = review(tmp_path, "--json")
     assert code == 1
@@ -359,6 +455,18 @@ def test_a_cut_off_log_is_mended_beside_the_original(
     mended = tmp_path / "cut.recovered.mcap"
     assert read_log(mended).events == read_log(path).events
     assert read_log(mended).complete
+
+
+def test_of_a_log_in_parts_only_the_one_that_was_cut_off_is_mended(
+    tmp_path: Path, review: Review
+) -> None:
+    path = write(tmp_path / "a.mcap", goals(400), LogSettings(part_bytes=20_000))
+    last = parts_of(path)[-1]
+    last.write_bytes(last.read_bytes()[:-30])
+    assert review(path)[0] == 1
+    assert [p.name for p in tmp_path.glob("*.recovered.mcap")] == [f"{last.stem}.recovered.mcap"]
+    out = review(path, "--page", 20)[1]
+    assert out.splitlines()[-1] == "Page 20 of 20."
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,8 @@ from __future__ import annotations
 import subprocess
 import sys
 import threading
+import time
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -13,6 +15,7 @@ from polaris_nl.execution.events import Edited, Failed, Observed, RunEnded, Step
 from polaris_nl.logs.journal import Journal
 from polaris_nl.logs.paths import parts_of
 from polaris_nl.logs.reader import read_log
+from polaris_nl.logs.recovery import recover
 from polaris_nl.logs.writer import LogSettings, LogWriter, RawKind
 from polaris_nl.runs import RunOrder, run_simulated
 from tests.execution.story import Case
@@ -119,10 +122,27 @@ def test_a_long_log_goes_on_in_other_files_and_is_read_as_one(tmp_path: Path) ->
     assert later.events[0].id == int(later.metadata["first_event"])
 
 
-def test_a_log_goes_on_in_another_file_at_midnight(tmp_path: Path) -> None:
+@pytest.fixture
+def zone(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[str], None]]:
+    """Goes to another time zone, and back at the end."""
+
+    def go(name: str) -> None:
+        monkeypatch.setenv("TZ", name)
+        time.tzset()
+
+    yield go
+    monkeypatch.undo()
+    time.tzset()
+
+
+@pytest.mark.parametrize(("name", "count"), [("UTC0", 3), ("WEST5", 2), ("EAST-9", 3)])
+def test_a_log_goes_on_in_another_file_at_midnight(
+    name: str, count: int, zone: Callable[[str], None], tmp_path: Path
+) -> None:
+    zone(name)
     events = [Observed(time=n * DAY / 4) for n in range(1, 9)]
     path = write(tmp_path / "a.mcap", events)
-    assert len(parts_of(path)) == 3
+    assert len(parts_of(path)) == count
     assert read_log(path).events == events
 
 
@@ -151,7 +171,8 @@ def test_a_file_that_cannot_grow_ends_with_a_whole_event(tmp_path: Path) -> None
     assert 0 < int(kept) < 200
     assert numbers(log.events) == list(range(int(kept)))
     assert not log.complete
-    assert "make no whole message" not in log.missing
+    assert log.missing == "It has no end, as it couldn't be written any more (File too large)."
+    assert recover(path).missing == log.missing
 
 
 @pytest.mark.parametrize("halts", [False, True])

@@ -26,6 +26,7 @@ from polaris_nl.runs import RunOrder, Sink, run_on
 from tests.execution.contract import DISK_FULL, RESTART, WATCH_S, Happening, Ran, Scenario
 from tests.execution.ros.processes import Onlooker, Process, new_domain
 from tests.execution.story import Case
+from tests.replayed_logs import differences
 
 MOCK = "tests.execution.ros.mock_driver"
 EXECUTOR = "tests.execution.ros.executor_process"
@@ -195,6 +196,7 @@ class RosHarness:
             logs.append(folder / f"run-{len(logs) + 1}.mcap")
             told = self._one_process(scenario, case, folder, stage, logs)
             found = _logged(logs[-1])
+            assert differences(logs[-1]) == []
             shown = stage.events[len(logged) :]
             # The last event may have been written, and not yet shown, when the process was killed.
             assert found[: len(shown)] == shown
