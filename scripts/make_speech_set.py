@@ -52,9 +52,11 @@ def main() -> None:
 
 def texts() -> Iterator[str]:
     """Everything that is said to the robot, and what isn't."""
-    for group in yaml.safe_load((SET / "sentences.yaml").read_text(encoding="utf-8")):
-        yield from group["say"]
-    yield from (SET / "foreign.txt").read_text(encoding="utf-8").splitlines()
+    for name in ("sentences.yaml", "aside.yaml"):
+        for group in yaml.safe_load((SET / name).read_text(encoding="utf-8")):
+            yield from group["say"]
+    for name in ("foreign.txt", "foreign_aside.txt"):
+        yield from (SET / name).read_text(encoding="utf-8").splitlines()
 
 
 def place(folder: Path, voice: str, text: str) -> Path:
