@@ -40,16 +40,21 @@ Voice = Callable[[str], tuple[Any, int]]
 
 
 def main() -> None:
-    """Speaks what is missing, a process for each core."""
-    with multiprocessing.Pool() as pool:
-        for name, missing in pool.imap_unordered(_speak, VOICES, 1):
-            sys.stdout.write(f"{name}: {missing} spoken\n")
+    """Speaks what is missing, a process for each core: each takes its share of every voice."""
+    shares = os.cpu_count() or 1
+    with multiprocessing.Pool(shares) as pool:
+        orders = [(name, share, shares) for name in VOICES for share in range(shares)]
+        for name, spoken in pool.imap(_speak, orders, 1):
+            sys.stdout.write(f"{name}: {spoken} spoken\n")
+            sys.stdout.flush()
 
 
-def _speak(name: str) -> tuple[str, int]:
-    """Speaks what is missing in one voice; the voice, and how much it was."""
+def _speak(order: tuple[str, int, int]) -> tuple[str, int]:
+    """Speaks what is missing of a share of the set in one voice; the voice, and how much it was."""
+    name, share, shares = order
     folder = Path.home() / ".cache" / "polaris-nl" / "speech-set"
-    missing = [text for text in texts() if not place(folder, name, text).exists()]
+    mine = list(texts())[share::shares]
+    missing = [text for text in mine if not place(folder, name, text).exists()]
     voice = VOICES[name]() if missing else None
     for text in missing:
         assert voice is not None
@@ -155,7 +160,7 @@ def _spelt(text: str) -> str:
 VOICES: dict[str, Callable[[], Voice]] = {
     "kumo": _kumo, "joe": _joe, "heart": _heart, "slt": _slt, "rms": _rms,
 }  # fmt: skip
-"""The slowest first, so that the cores have done at about the same time."""
+"""The slowest first."""
 
 if __name__ == "__main__":
     os.environ.setdefault("OMP_NUM_THREADS", "1")

@@ -74,8 +74,17 @@ class Runs:
 
     def _show(self, event: Event) -> None:
         self._sink(event)
-        if isinstance(event, _TOLD) and event.text:
+        if isinstance(event, CheckpointReached):
+            self._reached(event.checkpoint)
+        elif isinstance(event, _TOLD) and event.text:
             self._tell(event.text)
+
+    def _reached(self, checkpoint: str) -> None:
+        """Says what has been done: names of checkpoints are for the eye."""
+        session = self._conversation.session
+        found = session.snapshot.automaton.checkpoints.get(checkpoint)
+        if found is not None and found.goals:
+            self._tell(f"Done: {session.wording.goals(found.goals)}.")
 
     def _over(self, how: RunReport | str) -> None:
         self._conversation.session.running = False
@@ -85,6 +94,6 @@ class Runs:
             self._tell(how.failure)
 
 
-_TOLD = (CheckpointReached, Waiting, Deviated, Halted, RunEnded)
+_TOLD = (Waiting, Deviated, Halted, RunEnded)
 """What a user without a screen wants to know of a run."""
 _RUNS_ALREADY = 'A program is running already. Say "stop" first, then "run it" again.'

@@ -109,7 +109,7 @@ class Hearer:
     def _begin(self) -> None:
         self._audio.clear()
         self._quick, self._steady, self._acted = "", 0, ""
-        self._pause_s, self._weighed = PAUSE_S, ""
+        self._pause_s, self._weighed = PAUSE_S, [""]
 
     def call(self) -> None:
         """Attention begins now: speech that goes on is cut, and only its last half second is kept."""
@@ -161,10 +161,13 @@ class Hearer:
 
     def _wanted(self) -> float:
         """The silence that ends this piece."""
-        words = self._ears.phrased.partial()
-        if words != self._weighed:
-            self._weighed = words
-            self._pause_s = _ending(words.split(), self._weigh(words) if words else None)
+        found = [self._ears.phrased.partial()]
+        if self._ears.free is not None:
+            found.append(self._ears.free.partial())
+        if found != self._weighed:
+            self._weighed = found
+            # Last words are the least certain: whichever decoder has them right counts.
+            self._pause_s = min(_ending(t.split(), self._weigh(t) if t else None) for t in found)
         return self._pause_s
 
     def _ended(self, pause_s: float) -> Iterator[Heard]:
