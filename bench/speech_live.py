@@ -11,6 +11,7 @@ from __future__ import annotations
 import argparse
 import os
 import queue
+import shutil
 import statistics
 import subprocess
 import tempfile
@@ -21,6 +22,7 @@ from contextlib import closing, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from bench.speech_sounds import SENTENCES, SILENCE, spoken
 from bench.table import Row, show
 from polaris_nl.automaton.automaton import Automaton
 from polaris_nl.hands_free.conversation import Conversation, Reply
@@ -28,28 +30,15 @@ from polaris_nl.hands_free.listening import Listening
 from polaris_nl.hands_free.phrases import spoken_names, spoken_phrases
 from polaris_nl.model.world_file import load_world
 from polaris_nl.session import Session
-from polaris_nl.speech.audio import BLOCK, RATE, Converter, level
+from polaris_nl.speech.audio import BLOCK, RATE
 from polaris_nl.speech.ears import EarMaker
 from polaris_nl.speech.microphone import Microphone
 from polaris_nl.speech.modes import State
-from polaris_nl.speech.voices import HibariVoice
 from tests.speech.sound_card import SoundCard
 
-SENTENCES = (
-    "tell the resident that lunch is ready",
-    "once she acknowledges bring a full tray to her table and then go home",
-    "if she dismisses it just go home",
-    "what will you do if she dismisses it",
-    "put the blue cup in the cupboard",
-    "undo that",
-    "take the newspaper to the office desk",
-    "read me the program",
-    "stop",
-)
+SAID = (*SENTENCES, "stop")
 FEW, MANY = 36, 300
-SILENCE = b"\0\0" * BLOCK
 _BLOCK_S = BLOCK / RATE
-_QUIET_DB = -45.0
 _PATIENCE_S = 8.0
 _BEFORE = 6
 
@@ -116,7 +105,9 @@ class _Mouth:
 
 
 def rows(count: int = FEW) -> Iterator[Row]:
-    """The rows about the microphone."""
+    """The rows about the microphone; none where PulseAudio isn't installed."""
+    if shutil.which("pulseaudio") is None:
+        return
     found = measured(count)
     own, third = [s * 1000 for s in found.echoes], max(len(found.echoes) // 3, 1)
     drift = statistics.median(own[-third:]) - statistics.median(own[:third])
@@ -138,7 +129,7 @@ def rows(count: int = FEW) -> Iterator[Row]:
 
 def measured(count: int) -> Measured:
     """Says so many utterances, one after the other, each after the answer to the one before."""
-    sounds = {text: _spoken(text) for text in SENTENCES}
+    sounds = {text: spoken(text) for text in SAID}
     found, face = Measured(), _Face()
     with Session(load_world("care-home")) as session, _card():
         session.warm_up()
@@ -150,8 +141,8 @@ def measured(count: int) -> Measured:
         assert face.listens.wait(_PATIENCE_S), "the microphone doesn't open"
         started, used = time.perf_counter(), time.process_time()
         for number in range(count):
-            text = SENTENCES[number % len(SENTENCES)]
-            if number % len(SENTENCES) == 0:
+            text = SAID[number % len(SAID)]
+            if number % len(SAID) == 0:
                 session.begin_again(Automaton())
             _utter(text, sounds[text], face, found)
         found.share = (time.process_time() - used) / (time.perf_counter() - started)
@@ -175,16 +166,6 @@ def _utter(text: str, sound: Sequence[bytes], face: _Face, found: Measured) -> N
         at, _ = face.shown.get()
         (found.stops if text == "stop" else found.echoes).append(at - ended)
     found.memory.append(_resident())
-
-
-def _spoken(text: str) -> list[bytes]:
-    speech = HibariVoice().speech(text)
-    converter = Converter(speech.rate)
-    sound = b"".join([*converter.push_bytes(speech.samples, 2, 1), *converter.rest()])
-    blocks = [sound[at : at + BLOCK * 2] for at in range(0, len(sound), BLOCK * 2)]
-    while level(blocks[-1]) < _QUIET_DB:  # Time counts from the last sound.
-        blocks.pop()
-    return blocks
 
 
 @contextmanager
