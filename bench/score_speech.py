@@ -7,13 +7,16 @@
 | as typed | the same, of the sentences that are understood rightly when typed |
 | wrong | sentences that led to a program or command that was not meant, and weren't questioned or refused |
 | foreign | sentences meant for somebody else that were taken for the robot's |
+| heard | how many of the former and of the latter, in all voices |
 
+Settings were chosen by the set's first part; the part that is set aside has a table of its own.
 `--some N` scores every N-th sentence; `--only CONDITION` one condition; `--misses` lists what went wrong.
 """
 
 from __future__ import annotations
 
 import argparse
+import itertools
 import multiprocessing
 import sys
 from collections import Counter
@@ -21,7 +24,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 
-from bench.speech_audio import CONDITIONS, VOICES, Sentence, audio, foreign, sentences
+from bench.speech_audio import CONDITIONS, PARTS, VOICES, Sentence, audio, foreign, sentences
 from bench.speech_decoding import Decodings, cut
 from bench.speech_meaning import Remembered
 from polaris_nl.language.understanding import Understanding
@@ -132,37 +135,37 @@ def score(order: tuple[Task, tuple[str, ...]]) -> list[Score]:
     sounds = cut(audio(sentence.text, task.voice, task.condition), _activity())
     context = _context(task.world, sentence.after)
     typed_right = context.meaning(sentence.text) == sentence.expect
-    found = []
-    for system in systems:
-        said = _hear(system, task, sounds, context)
-        meaning = context.meaning(said.text) if said.accepted else "refused"
-        right = meaning == sentence.expect
-        acts = meaning.startswith(("start", "command"))
-        exact = said.text.replace(". ", " ").replace("mister", "mr") == sentence.text
-        found.append(
-            Score(
-                task,
-                system,
-                said.text,
-                meaning,
-                right,
-                typed_right,
-                exact,
-                acts and not right,
-                said.free,
-                f" ({said.why_not})"
-                if said.why_not
-                else f" <- {said.repaired}" * bool(said.repaired),
-            )
-        )
-    return found
+    return [
+        _scored(task, system, _hear(system, task, sounds, context), context, typed_right)
+        for system in systems
+    ]
 
 
-def tasks(some: int, conditions: Sequence[str], voices: Sequence[str]) -> Iterator[Task]:
-    """Everything that is to be heard: clean in every voice, with noise in two that take turns."""
+def _scored(
+    task: Task, system: str, said: Utterance, context: Remembered, typed_right: bool
+) -> Score:
+    meaning = context.meaning(said.text) if said.accepted else "refused"
+    right = meaning == task.sentence.expect
+    note = f" ({said.why_not})" if said.why_not else f" <- {said.repaired}" * bool(said.repaired)
+    return Score(
+        task=task,
+        system=system,
+        heard=said.text,
+        meaning=meaning,
+        right=right,
+        typed_right=typed_right,
+        exact=said.text.replace(". ", " ").replace("mister", "mr") == task.sentence.text,
+        wrong=meaning.startswith(("start", "command")) and not right,
+        free=said.free,
+        note=note,
+    )
+
+
+def tasks(part: str, some: int, conditions: Sequence[str], voices: Sequence[str]) -> Iterator[Task]:
+    """Everything of a part that is to be heard: clean in every voice, with noise in two that take turns."""
     for condition in conditions:
         turn = CONDITIONS.index(condition)
-        for number, sentence in enumerate((*sentences(), *foreign())):
+        for number, sentence in enumerate((*sentences(part), *foreign(part))):
             if number % some:
                 continue
             both = {
@@ -180,9 +183,13 @@ def _percent(part: int, whole: int) -> str:
 
 
 def table(scores: Sequence[Score], conditions: Sequence[str], systems: Sequence[str]) -> None:
-    """Prints the shares, a line for each condition and system."""
-    head = ("condition", "system", "words", "program", "as typed", "wrong", "foreign")
-    sys.stdout.write("{:<15} {:<14} {:>7} {:>9} {:>9} {:>7} {:>8}\n".format(*head))
+    """Prints the shares, a line for each condition and system, and how many sentences they are of."""
+    said = len({s.task.sentence for s in scores if s.task.sentence.world})
+    more = len({s.task.sentence for s in scores if not s.task.sentence.world})
+    part = scores[0].task.sentence.part
+    sys.stdout.write(f"{part}: {said} sentences to the robot, {more} to others\n")
+    head = ("condition", "system", "words", "program", "as typed", "wrong", "foreign", "heard")
+    sys.stdout.write("{:<15} {:<14} {:>7} {:>9} {:>9} {:>7} {:>8} {:>9}\n".format(*head))
     for condition in (*conditions, *(("all",) if len(conditions) > 1 else ())):
         for system in systems:
             own = [
@@ -198,9 +205,12 @@ def table(scores: Sequence[Score], conditions: Sequence[str], systems: Sequence[
                 _percent(sum(s.right for s in typed), len(typed)),
                 _percent(sum(s.wrong for s in meant), len(meant)),
                 _percent(sum(s.meaning != "refused" for s in others), len(others)),
+                f"{len(meant)}+{len(others)}",
             )
             sys.stdout.write(
-                "{:<15} {:<14} {:>7} {:>9} {:>9} {:>7} {:>8}\n".format(condition, system, *cells)
+                "{:<15} {:<14} {:>7} {:>9} {:>9} {:>7} {:>8} {:>9}\n".format(
+                    condition, system, *cells
+                )
             )
     sys.stdout.flush()
 
@@ -222,6 +232,7 @@ def main() -> None:
     """Scores and prints."""
     parser = argparse.ArgumentParser(description="How well speech is understood.")
     parser.add_argument("--some", type=int, default=1, help="every N-th sentence")
+    parser.add_argument("--part", choices=PARTS, action="append", help="these parts of the set")
     parser.add_argument("--only", choices=CONDITIONS, action="append", help="these conditions")
     parser.add_argument("--voice", choices=VOICES, action="append", help="these voices")
     parser.add_argument("--system", choices=SYSTEMS, action="append", help="these systems")
@@ -230,15 +241,20 @@ def main() -> None:
     given = parser.parse_args()
     conditions = tuple(given.only or CONDITIONS)
     systems = tuple(given.system or SYSTEMS)
-    work = [(task, systems) for task in tasks(given.some, conditions, tuple(given.voice or VOICES))]
-    if given.jobs > 1:
-        with multiprocessing.get_context("spawn").Pool(given.jobs) as pool:
-            found = [s for scores in pool.imap(score, work, 8) for s in scores]
-    else:
-        found = [s for order in work for s in score(order)]
-    if given.misses:
-        misses(found)
-    table(found, conditions, systems)
+    for part in given.part or PARTS:
+        some = tasks(part, given.some, conditions, given.voice or VOICES)
+        found = list(_scores([(task, systems) for task in some], given.jobs))
+        if given.misses:
+            misses(found)
+        table(found, conditions, systems)
+
+
+def _scores(work: Sequence[tuple[Task, tuple[str, ...]]], jobs: int) -> Iterator[Score]:
+    if jobs == 1:
+        yield from itertools.chain.from_iterable(map(score, work))
+        return
+    with multiprocessing.get_context("spawn").Pool(jobs) as pool:
+        yield from itertools.chain.from_iterable(pool.imap(score, work, 8))
 
 
 if __name__ == "__main__":

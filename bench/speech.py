@@ -1,7 +1,8 @@
 """From the end of speech to the echo, the quick words, memory over many utterances, and the price of decoding.
 
 Sound is worked on as fast as it goes; what would be waited for (the pause that ends a sentence) is counted by
-the sound itself, so that the figures are those of a microphone without its own delay (some 100 ms).
+the sound itself, so that the figures are those of a microphone without its own delay. The same at a microphone,
+in real time, follows (`bench/speech_live.py`).
 """
 
 from __future__ import annotations
@@ -10,39 +11,28 @@ import resource
 import time
 from collections.abc import Iterator, Sequence
 
+from bench import speech_live
+from bench.speech_sounds import SENTENCES, SILENCE, spoken
 from bench.table import Row
 from polaris_nl.automaton.automaton import Automaton
 from polaris_nl.hands_free.phrases import spoken_phrases
 from polaris_nl.hands_free.weight import weigher
 from polaris_nl.model.world_file import load_world
 from polaris_nl.session import Session
-from polaris_nl.speech.audio import BLOCK, RATE, Converter, level
+from polaris_nl.speech.audio import BLOCK, RATE
 from polaris_nl.speech.ears import EarMaker, Ears
 from polaris_nl.speech.hearer import Heard, Hearer, Quick
 from polaris_nl.speech.hearing import utterance
 from polaris_nl.speech.recogniser import Decoder
-from polaris_nl.speech.voices import HibariVoice
 
-SENTENCES = (
-    "tell the resident that lunch is ready",
-    "once she acknowledges bring a full tray to her table and then go home",
-    "if she dismisses it just go home",
-    "what will you do if she dismisses it",
-    "put the blue cup in the cupboard",
-    "undo that",
-    "take the newspaper to the office desk",
-    "read me the program",
-)
 ROUNDS = 3
 IN_A_ROW = 300
 _BLOCK_S = BLOCK / RATE
-_QUIET_DB = -45.0
-_SILENCE = b"\0\0" * BLOCK
 
 
 def rows() -> Iterator[Row]:
     """The rows about speech."""
-    maker, sounds = EarMaker(), [_spoken(text) for text in (*SENTENCES, "stop", "pause")]
+    maker, sounds = EarMaker(), [_padded(text) for text in (*SENTENCES, "stop", "pause")]
     with Session(load_world("care-home")) as session:
         session.warm_up()
         ears = maker.ears(spoken_phrases(session.understanding))
@@ -57,18 +47,14 @@ def rows() -> Iterator[Row]:
         )  # fmt: skip
         price = [_price(ears.phrased, s) for s in sounds]
         free = [_price(ears.free, s) for s in sounds] if ears.free is not None else []
-        yield Row("decoding with phrases, a second of sound", "", price, free, "decoding freely")
+        yield Row(
+            "decoding with phrases, a second of sound", "<= 300", price, free, "decoding freely"
+        )
+    yield from speech_live.rows()
 
 
-def _spoken(text: str) -> list[bytes]:
-    voice = HibariVoice()
-    speech = voice.speech(text)
-    converter = Converter(speech.rate)
-    sound = b"".join([*converter.push_bytes(speech.samples, 2, 1), *converter.rest()])
-    whole = [sound[at : at + BLOCK * 2] for at in range(0, len(sound), BLOCK * 2)]
-    while level(whole[-1]) < _QUIET_DB:  # The pause is counted from the last sound.
-        whole.pop()
-    return [*[_SILENCE] * 6, *whole[:-1], whole[-1].ljust(BLOCK * 2, b"\0")]
+def _padded(text: str) -> list[bytes]:
+    return [*[SILENCE] * 6, *spoken(text)]
 
 
 def _echoes(
@@ -80,7 +66,7 @@ def _echoes(
         hearer = Hearer(ears, weigher(session))
         for sound in sounds:
             silent = 0
-            for number, block in enumerate([*sound, *[_SILENCE] * 30]):
+            for number, block in enumerate([*sound, *[SILENCE] * 30]):
                 started = time.perf_counter()
                 silent = max(number + 1 - len(sound), 0)
                 heard = [h for h in hearer.push(block, True) if isinstance(h, Heard)]
@@ -96,7 +82,7 @@ def _echoes(
 
 def _quick(session: Session, ears: Ears, sound: list[bytes]) -> float:
     hearer = Hearer(ears, weigher(session))
-    for number, block in enumerate([*sound, *[_SILENCE] * 20]):
+    for number, block in enumerate([*sound, *[SILENCE] * 20]):
         started = time.perf_counter()
         if any(isinstance(h, Quick) for h in hearer.push(block, False)):
             took = time.perf_counter() - started
@@ -107,7 +93,7 @@ def _quick(session: Session, ears: Ears, sound: list[bytes]) -> float:
 def _growth(session: Session, ears: Ears, sounds: Sequence[list[bytes]]) -> float:
     hearer, half = Hearer(ears, weigher(session)), 0.0
     for number in range(IN_A_ROW):
-        for block in [*sounds[number % len(sounds)], *[_SILENCE] * 15]:
+        for block in [*sounds[number % len(sounds)], *[SILENCE] * 15]:
             for happening in hearer.push(block, True):
                 if isinstance(happening, Heard):
                     utterance([happening.spoken], weigher(session), ears.ways)

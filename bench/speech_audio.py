@@ -19,6 +19,11 @@ SET = Path(__file__).parent / "speech_set"
 FOLDER = Path.home() / ".cache" / "polaris-nl" / "speech-set"
 VOICES = ("heart", "joe", "slt", "rms", "kumo")
 CONDITIONS = ("clean", "kitchen 20 dB", "babble 20 dB", "kitchen 10 dB", "babble 10 dB")
+PARTS = {
+    "tuned on": ("sentences.yaml", "foreign.txt"),
+    "set aside": ("aside.yaml", "foreign_aside.txt"),
+}
+"""The set's parts, with what is said to the robot and what isn't: settings were chosen by the first."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,26 +31,28 @@ class Sentence:
     """One sentence of the set; `world` is "" for speech that isn't meant for the robot."""
 
     text: str
+    part: str
     world: str = ""
     after: tuple[str, ...] = ()
     expect: str = "refused"
 
 
 @cache
-def sentences() -> tuple[Sentence, ...]:
-    """What is said to the robot."""
-    groups = yaml.safe_load((SET / "sentences.yaml").read_text(encoding="utf-8"))
+def sentences(part: str) -> tuple[Sentence, ...]:
+    """What is said to the robot, in a part of the set."""
+    groups = yaml.safe_load((SET / PARTS[part][0]).read_text(encoding="utf-8"))
     return tuple(
-        Sentence(text, group["world"], tuple(group.get("after", ())), expect)
+        Sentence(text, part, group["world"], tuple(group.get("after", ())), expect)
         for group in groups
         for text, expect in group["say"].items()
     )
 
 
 @cache
-def foreign() -> tuple[Sentence, ...]:
-    """What is said to other people."""
-    return tuple(map(Sentence, (SET / "foreign.txt").read_text(encoding="utf-8").splitlines()))
+def foreign(part: str) -> tuple[Sentence, ...]:
+    """What is said to other people, in a part of the set."""
+    lines = (SET / PARTS[part][1]).read_text(encoding="utf-8").splitlines()
+    return tuple(Sentence(text, part) for text in lines)
 
 
 def audio(text: str, voice: str, condition: str) -> bytes:
@@ -106,7 +113,7 @@ def _kitchen(length: int, random: numpy.random.Generator) -> Any:
 
 def _babble(length: int, random: numpy.random.Generator) -> Any:
     """Six people talking about something else."""
-    said = [s.text for s in foreign()]
+    said = [s.text for s in foreign(next(iter(PARTS)))]
     total = numpy.zeros(length, dtype="float64")
     for _ in range(6):
         own = numpy.zeros(0, dtype="float32")

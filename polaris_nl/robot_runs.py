@@ -3,17 +3,36 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from functools import partial
 
 from polaris_nl.execution.backend import Robot
 from polaris_nl.execution.clock import RealClock
 from polaris_nl.execution.events import Event
-from polaris_nl.execution.ros.profile import Profile
+from polaris_nl.execution.ros.profile import Profile, profile_for
 from polaris_nl.execution.ros.recording import Definition, Recorder
 from polaris_nl.execution.ros.robot import StretchRobot
 from polaris_nl.execution.state import HumanCommand
 from polaris_nl.logs.writer import LogWriter, RawKind
 from polaris_nl.model.errors import RunError
-from polaris_nl.runs import Connect, RunOrder, RunReport, Sink, run_on
+from polaris_nl.runs import CarryOut, Connect, RunOrder, RunReport, Sink, run_on, run_simulated
+
+WORLD = "world"
+"""The name of the simulated world, where no robot is."""
+
+
+def profile_of(robot: str) -> Profile | None:
+    """The profile of a robot by its name or file; None for the simulated world.
+
+    Raises:
+        RunError: there is no such robot.
+        FileError, FormatError: the file can't be read.
+    """
+    return None if robot == WORLD else profile_for(robot)
+
+
+def carry_out_with(profile: Profile | None) -> CarryOut:
+    """What runs programs on a robot, or in the simulated world where it is None."""
+    return run_simulated if profile is None else partial(run_on_robot, profile)
 
 
 def run_on_robot(

@@ -265,7 +265,7 @@ class Session:
                     return replace(interpretation, say="The program is empty already."), ""
                 failure = self._do((ReplaceProgram(Automaton()),), "start over")
                 return replace(
-                    interpretation, say='The program is empty now. "Undo" brings it back.'
+                    interpretation, say='I\'ve dropped all of it; "undo" brings it back.'
                 ), failure
             case "save" | "load" as command:
                 return self._file_command(interpretation, command)

@@ -15,13 +15,15 @@ from polaris_nl.hands_free.conversation import Conversation, Reply
 from polaris_nl.hands_free.listening import Listening
 from polaris_nl.hands_free.phrases import spoken_names
 from polaris_nl.hands_free.recording import AudioKeeper
-from polaris_nl.hands_free.running import Runs
+from polaris_nl.hands_free.runs import Runs
 from polaris_nl.logs.privacy import privacy_of
+from polaris_nl.logs.writer import LogWriter
 from polaris_nl.model.errors import UsageError
+from polaris_nl.robot_runs import carry_out_with, profile_of
 from polaris_nl.session import Session
 from polaris_nl.snapshot import answer_json
 from polaris_nl.speech.audio import level
-from polaris_nl.speech.ears import EarMaker, gaps_in_words
+from polaris_nl.speech.ears import EarMaker, Ears, gaps_in_words
 from polaris_nl.speech.microphone import microphones
 from polaris_nl.speech.modes import Attention, State
 from polaris_nl.speech.sources import Source, source_for
@@ -47,7 +49,7 @@ def run(arguments: Namespace) -> int:
     source = source_for(arguments.mic, arguments.allow_remote)
     if arguments.level:
         return _level(source, arguments.json)
-    maker = EarMaker()
+    maker, profile = EarMaker(), profile_of(arguments.robot)
     if arguments.record and arguments.log is None:
         raise UsageError("--record keeps the sound in a log; name one with --log OUT.mcap.")
     with logged_session(arguments) as (session, log):
@@ -60,14 +62,10 @@ def run(arguments: Namespace) -> int:
             if log is not None:
                 log.write(event)
 
-        conversation = Conversation(session, sink, arguments.aloud)
+        conversation = Conversation(
+            session, sink, arguments.aloud, profile.title if profile is not None else ""
+        )
         speaker = _speaker(arguments)
-        listening = Listening(
-            source, ears, conversation, face,
-            Attention(arguments.mode, half_duplex=not arguments.headset), speaker,
-            MicroWakeWord() if arguments.mode == "wake" else None,
-            AudioKeeper(log).keep if log is not None and arguments.record else None,
-        )  # fmt: skip
 
         def tell(text: str) -> None:
             face.tells(text)
@@ -75,13 +73,12 @@ def run(arguments: Namespace) -> int:
                 speaker.say(text, "run")
                 sink(Said(time=time.time(), text=text, aloud=True))
 
-        privacy = privacy_of(arguments.leave_out)
-        runs = Runs(conversation, sink, tell, arguments.log, privacy)
+        listening = _listening(arguments, source, ears, conversation, face, speaker, log)
+        runs = Runs(
+            conversation, sink, tell, arguments.log, carry_out_with(profile),
+            privacy_of(arguments.leave_out),
+        )  # fmt: skip
         listening.started = runs.start
-        if speaker is not None:
-            speaker.changed = listening.spoke
-        if arguments.mode == "talk" and sys.stdin.isatty():
-            threading.Thread(target=_keys, args=(listening,), name="keys", daemon=True).start()
         try:
             listening.run()
         finally:
@@ -89,6 +86,28 @@ def run(arguments: Namespace) -> int:
             if speaker is not None:
                 speaker.close()
     return face.code
+
+
+def _listening(
+    arguments: Namespace,
+    source: Source,
+    ears: Ears,
+    conversation: Conversation,
+    face: _Face,
+    speaker: Speaker | None,
+    log: LogWriter | None,
+) -> Listening:
+    listening = Listening(
+        source, ears, conversation, face,
+        Attention(arguments.mode, half_duplex=not arguments.headset), speaker,
+        MicroWakeWord() if arguments.mode == "wake" else None,
+        AudioKeeper(log).keep if log is not None and arguments.record else None,
+    )  # fmt: skip
+    if speaker is not None:
+        speaker.changed = listening.spoke
+    if arguments.mode == "talk" and sys.stdin.isatty():
+        threading.Thread(target=_keys, args=(listening,), name="keys", daemon=True).start()
+    return listening
 
 
 class _Face:

@@ -189,11 +189,7 @@ def _planning(adder: _Adder) -> None:
         "polaris-nl run lunch.polaris.json --people dismiss --log lunch.mcap",
     )
     _program(run)
-    run.add_argument(
-        "--robot", metavar="NAME", default="world",
-        help="world: the simulated world (default); stretch-sim: the simulated Stretch; stretch, stretch-3, "
-        "stretch-re2 or a profile file: a Stretch",
-    )  # fmt: skip
+    _robot(run)
     run.add_argument(
         "--yes",
         action="store_true",
@@ -220,6 +216,14 @@ def _planning(adder: _Adder) -> None:
     run.add_argument(
         "--live", action="store_true",
         help="in real time; type stop, pause, resume, or what happened (the resident acknowledges)",
+    )  # fmt: skip
+
+
+def _robot(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--robot", metavar="NAME", default="world",
+        help="world: the simulated world (default); stretch-sim: the simulated Stretch; stretch, stretch-3, "
+        "stretch-re2 or a profile file: a Stretch",
     )  # fmt: skip
 
 
@@ -263,6 +267,7 @@ def _speaking(adder: _Adder) -> None:
         "--mode", choices=("always", "wake", "talk"), default="always",
         help="listen always (default), after the words \"hey jarvis\", or after Enter",
     )  # fmt: skip
+    _robot(listen)
     listen.add_argument("--aloud", action="store_true", help="speak the answers, too")
     listen.add_argument(
         "--headset", action="store_true", help="listen while speaking: it can't hear itself"

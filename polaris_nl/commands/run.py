@@ -9,7 +9,6 @@ from argparse import Namespace
 from collections.abc import Callable, Iterable
 from contextlib import suppress
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 
 from polaris_nl.automaton.automaton import Automaton
@@ -24,7 +23,7 @@ from polaris_nl.commands.common import (
     width,
 )
 from polaris_nl.execution.events import Event, GoalConfirmed
-from polaris_nl.execution.ros.profile import Profile, profile_for
+from polaris_nl.execution.ros.profile import Profile
 from polaris_nl.execution.runner import objectives_met
 from polaris_nl.execution.state import HumanCommand
 from polaris_nl.hands_free.running import command_in as command_in
@@ -36,13 +35,12 @@ from polaris_nl.model.world import World
 from polaris_nl.render.glyphs import glyphs_for
 from polaris_nl.render.layout import wrapped
 from polaris_nl.render.log import event_rows
-from polaris_nl.robot_runs import run_on_robot
+from polaris_nl.robot_runs import carry_out_with, profile_of
 from polaris_nl.run_logs import authored_in
-from polaris_nl.runs import RunOrder, resumable, run_simulated
+from polaris_nl.runs import RunOrder, resumable
 from polaris_nl.session import Session
 
 NONE = "none"
-WORLD = "world"
 
 
 def run(arguments: Namespace) -> int:
@@ -51,7 +49,7 @@ def run(arguments: Namespace) -> int:
     Nothing moves in the simulated world, so the command itself is the yes there. A robot, simulated
     ones included, wants one of its own.
     """
-    profile = None if arguments.robot == WORLD else profile_for(arguments.robot)
+    profile = profile_of(arguments.robot)
     program, world = opened(arguments)
     people = _people(arguments.people, world)
     with Session(world, program.automaton) as session:
@@ -74,8 +72,7 @@ def run(arguments: Namespace) -> int:
         order = replace(order, before=(*order.before, *session.past))
         listens = arguments.live or (profile is not None and sys.stdin.isatty())
         commands = Keyboard(session.understanding, program.automaton).commands if listens else tuple
-        carry_out = run_simulated if profile is None else partial(run_on_robot, profile)
-        report = carry_out(
+        report = carry_out_with(profile)(
             order, confirmed=confirmed, show=shower(arguments.json), commands=commands
         )
     result = report.result

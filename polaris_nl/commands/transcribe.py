@@ -17,7 +17,7 @@ from polaris_nl.model.errors import LogError, SpeechError
 from polaris_nl.session import Session
 from polaris_nl.snapshot import Answer, answer_json
 from polaris_nl.speech.audio import file_blocks
-from polaris_nl.speech.ears import EarMaker, Ears
+from polaris_nl.speech.ears import EarMaker, Ears, gaps_in_words
 from polaris_nl.speech.hearing import Utterance
 
 NOT_MEANT = (
@@ -33,6 +33,8 @@ def run(arguments: Namespace) -> int:
         ears = (
             maker.free_ears() if arguments.free else ears_for(session, maker, arguments.recogniser)
         )
+        for text in gaps_in_words(ears.alikes, spoken_names(session.understanding)):
+            complain(text)
         start = session.snapshot.automaton
         for number, path in enumerate(arguments.files):
             if number and not arguments.dialogue:
@@ -45,14 +47,8 @@ def run(arguments: Namespace) -> int:
             except (SpeechError, LogError) as error:
                 complain(str(error))
                 if arguments.json:
-                    print_json(
-                        {
-                            "file": str(path),
-                            "outcome": "refused",
-                            "accepted": False,
-                            "error": str(error),
-                        }
-                    )
+                    refused = {"file": str(path), "outcome": "refused", "accepted": False}
+                    print_json({**refused, "error": str(error)})
                 code = 1
                 continue
             show(path, said, answer, session, arguments.json)

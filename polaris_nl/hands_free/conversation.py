@@ -17,6 +17,7 @@ from polaris_nl.execution.state import HumanCommand
 from polaris_nl.hands_free.choices import Choices, choices_among
 from polaris_nl.hands_free.phrases import spoken_names
 from polaris_nl.hands_free.running import Running, told
+from polaris_nl.model.text import capital
 from polaris_nl.session import Session
 from polaris_nl.snapshot import Answer
 from polaris_nl.speech.hearing import Utterance
@@ -54,6 +55,7 @@ class Conversation:
         session: what is changed and asked.
         sink: is given what is said, as events.
         aloud: what it says is spoken.
+        robot: what a run moves, such as "the simulated Stretch"; "" where nothing does.
         now: the time in seconds since the epoch.
     """
 
@@ -62,12 +64,14 @@ class Conversation:
         session: Session,
         sink: Callable[[Event], None] = lambda event: None,
         aloud: bool = False,
+        robot: str = "",
         now: Callable[[], float] = time.time,
     ) -> None:
         self.session = session
         self.running: Running | None = None
         self._sink = sink
         self._aloud = aloud
+        self._robot = robot
         self.now = now
         self._failures = 0
         self._choices: Choices | None = None
@@ -134,10 +138,13 @@ class Conversation:
                 runs.command(command)
                 return self._reply(said, _RUN_ANSWERS.get(command.kind, "All right."))
         answer = self.session.say(text, source="voice", heard=heard)
-        self._tell(answer.say)
+        words = answer.say
+        if self._robot and self.session.awaits_yes:
+            words = f"{capital(self._robot)} will move. {words}"
+        self._tell(words)
         return Reply(
             said,
-            answer.say,
+            words,
             answer,
             ends=answer.interpretation.command == "quit",
             starts=answer.confirmed,

@@ -199,12 +199,16 @@ class Changes:
         if match.intent == "between" and other is not None:
             two = program.checkpoints[other].name
             edits = put_between(program, new, this, other)
-            return edits, f"between {name} and {two}, {words}", [new.id]
+            return edits, f"between the steps {name} and {two}, {words}", [new.id]
         if match.intent == "at-start":
             return put_after(program, new, START), f"first, {words}", [new.id]
         if match.intent in ("before", "before-that"):
-            return put_before(program, new, this, when), f"before {name}, {words}", [new.id]
-        return put_after(program, new, this, when), f"after {name}, {words}", [new.id]
+            return (
+                put_before(program, new, this, when),
+                f"before the step {name}, {words}",
+                [new.id],
+            )
+        return put_after(program, new, this, when), f"after the step {name}, {words}", [new.id]
 
     def _connected(
         self, match: Match, source: str, target: str, program: Automaton, dialogue: Dialogue

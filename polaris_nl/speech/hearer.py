@@ -4,23 +4,43 @@ from __future__ import annotations
 
 import time
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from polaris_nl.speech.activity import BEFORE_S, LONGEST_S, PAUSE_S, Cutter
 from polaris_nl.speech.audio import RATE
 from polaris_nl.speech.ears import Ears
 from polaris_nl.speech.recogniser import UNKNOWN, Spoken
-from polaris_nl.speech.weight import Weigh
+from polaris_nl.speech.weight import Weigh, Weight
 
 QUICK = {"stop": "stop", "pause": "pause"}
 """Words that act before the speaker has ended, and what they command."""
-WHOLE_S, ENOUGH_S, MORE_S = 0.35, 0.45, 1.1
-"""Silence that ends a piece whose words are a short command, are a goal, or don't make sense yet."""
+WHOLE_S, ENOUGH_S, PARTLY_S, MORE_S = 0.35, 0.4, 0.8, 1.1
+"""Silence that ends a piece whose words are a short command, are a goal, would be asked about (as the first
+half of a longer sentence is), or don't make sense yet."""
 SHORT = 3
 """Words of a short command, at most."""
 STEADY = 2
 """Blocks in a row that have to hear the same quick word."""
+OPEN = frozenset(
+    [
+        "a",
+        "an",
+        "and",
+        "at",
+        "from",
+        "if",
+        "into",
+        "onto",
+        "or",
+        "the",
+        "to",
+        "unless",
+        "until",
+        "with",
+    ]
+)
+"""Words that hardly a sentence ends with: whoever pauses after one goes on."""
 LOOK_S = 0.2
 """Silence after which it is asked whether the words so far are enough."""
 _BYTES_A_SECOND = RATE * 2
@@ -89,7 +109,7 @@ class Hearer:
     def _begin(self) -> None:
         self._audio.clear()
         self._quick, self._steady, self._acted = "", 0, ""
-        self._pause_s, self._weighed = PAUSE_S, ""
+        self._pause_s, self._weighed = PAUSE_S, [""]
 
     def call(self) -> None:
         """Attention begins now: speech that goes on is cut, and only its last half second is kept."""
@@ -141,13 +161,14 @@ class Hearer:
 
     def _wanted(self) -> float:
         """The silence that ends this piece."""
-        words = self._ears.phrased.partial()
-        if words == self._weighed:
-            return self._pause_s
-        self._weighed = words
-        if not words or UNKNOWN in words or self._weigh(words) is None:
-            return MORE_S
-        return WHOLE_S if len(words.split()) <= SHORT else ENOUGH_S
+        found = [self._ears.phrased.partial()]
+        if self._ears.free is not None:
+            found.append(self._ears.free.partial())
+        if found != self._weighed:
+            self._weighed = found
+            # Last words are the least certain: whichever decoder has them right counts.
+            self._pause_s = min(_ending(t.split(), self._weigh(t) if t else None) for t in found)
+        return self._pause_s
 
     def _ended(self, pause_s: float) -> Iterator[Heard]:
         ended = self._clock()
@@ -171,3 +192,12 @@ class Hearer:
             if self._ears.free is not None:
                 self._ears.free.finish()
         self._begin()
+
+
+def _ending(words: Sequence[str], weight: Weight | None) -> float:
+    """The silence that ends a piece of these words."""
+    if weight is None or UNKNOWN in words or words[-1] in OPEN:
+        return MORE_S
+    if weight is Weight.ASKING:
+        return PARTLY_S
+    return WHOLE_S if len(words) <= SHORT else ENOUGH_S

@@ -7,13 +7,16 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from polaris_nl.automaton.program import program_json
+from polaris_nl.execution.events import Event
+from polaris_nl.execution.ros.profile import Profile
 from polaris_nl.hands_free.conversation import Conversation, Reply
 from polaris_nl.hands_free.listening import Listening
 from polaris_nl.hands_free.phrases import spoken_names, spoken_phrases
 from polaris_nl.hands_free.recording import AudioKeeper
-from polaris_nl.hands_free.running import Runs
+from polaris_nl.hands_free.runs import Runs
 from polaris_nl.logs.writer import LogWriter, attachments_of
 from polaris_nl.model.world_file import load_world
+from polaris_nl.robot_runs import carry_out_with
 from polaris_nl.session import Session
 from polaris_nl.speech.ears import EarMaker, Ears
 from polaris_nl.speech.modes import Attention, State
@@ -71,11 +74,19 @@ class Talk:
         world: a shipped world.
         maker: loaded models.
         log: keeps the conversation there, with its sound.
+        robot: what runs move; nothing but the simulated world if None.
     """
 
-    def __init__(self, world: str, maker: EarMaker, log: Path | None = None) -> None:
+    def __init__(
+        self,
+        world: str,
+        maker: EarMaker,
+        log: Path | None = None,
+        robot: Profile | None = None,
+    ) -> None:
         self.session = Session(load_world(world))
         self.face = Collected()
+        self.events: list[Event] = []
         self.voice = Silent()
         self.speaker = Speaker(self.voice, self.voice)
         world_ = self.session.world
@@ -89,11 +100,14 @@ class Talk:
         if self.log is not None:
             write = self.log.write
             self.session.report_to(lambda event: (write(event), None)[1])
-        self.conversation = Conversation(self.session, self._sink, aloud=True)
-        self.runs = Runs(self.conversation, self._sink, self._tell, log)
+        self.conversation = Conversation(
+            self.session, self._sink, aloud=True, robot=robot.title if robot is not None else ""
+        )
+        self.runs = Runs(self.conversation, self._sink, self._tell, log, carry_out_with(robot))
         self.listening: Listening | None = None
 
-    def _sink(self, event: object) -> None:
+    def _sink(self, event: Event) -> None:
+        self.events.append(event)
         if self.log is not None:
             self.log.write(event)
 

