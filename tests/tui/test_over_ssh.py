@@ -219,7 +219,7 @@ def test_a_dropped_line_neither_stops_nor_orphans_a_run(
     again = Tmux(tmp_path, "again")
     try:
         again.start(sshd.command("tui", str(file), "--world", "care-home"))
-        again.see("This run was begun in another terminal.", "Run", "tell the resident")
+        again.see("─ Run, begun in another terminal ─", "tell the resident")
         again.see("I wait.", "lunch is dismissed", seconds=2 * LIMIT_S)
         again.keys("F9")
         again.see("The run is over: stopped.", "polaris-nl review")

@@ -208,6 +208,7 @@ class BaseApp(App[int]):
             reading,
             state.slow,
             state.view == "map" and state.before_view == "plan" and reading is None,
+            state.attached,
         )
 
     def draw(self) -> None:

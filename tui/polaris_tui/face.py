@@ -191,7 +191,7 @@ class Face(BaseApp):
         if self.state.view != "map":
             self.state.view = "run"
         self.session.running = True
-        self.state.ran = snapshot
+        self.state.ran, self.state.attached = snapshot, False
         self.state.current.start()
 
     def _served(self, run: Running) -> Callable[[Message], object]:
@@ -227,7 +227,7 @@ class Face(BaseApp):
             self.state.note(Entry(str(error), "! ", "bad"))
             return
         self._elsewhere = self._elsewhere[:-1]
-        self.state.current, self.state.ran = run, run.snapshot
+        self.state.current, self.state.ran, self.state.attached = run, run.snapshot, True
         self.state.progress = Progress(self.session.world.initial, activity="running")
         self.state.view = "run"
         self.state.note(Entry(ATTACHED))

@@ -55,6 +55,7 @@ class Scene:
         reading: the place in a log, or None.
         picked: the checkpoint that is picked.
         stepping: the map is of the step that is picked.
+        attached: the run was begun in another terminal.
         slow: the plan has been in the making for so long that the screen says so.
     """
 
@@ -75,6 +76,7 @@ class Scene:
     reading: Reading | None = None
     slow: bool = False
     stepping: bool = False
+    attached: bool = False
 
     @property
     def running(self) -> bool:

@@ -36,6 +36,7 @@ class State:
         purposes: why actions are there, by revision and number.
         current: the run that goes on.
         ran: the program and plan of the last run.
+        attached: the run that goes on, or the last one, was begun in another terminal.
         awaited_plan: the plan that the last answer was about.
         awaited: ticket, revision and older plan of an answer whose plan's news are to come.
         stopped_at: the ticket of the last thing said before a stop.
@@ -63,6 +64,7 @@ class State:
     choosing: Choosing = Choosing()
     current: Running | RemoteRun | None = None
     ran: Snapshot | None = None
+    attached: bool = False
     awaited_plan: BranchingPlan | None = None
     awaited: tuple[int, int, BranchingPlan | None] | None = None
     stopped_at: int = 0

@@ -40,7 +40,7 @@ def heading(view: View, scene: Scene) -> str:
         case "plan":
             return f"Plan, step by step{_making(scene)}"
         case "run":
-            return "Run" if running or scene.progress.started is None else "Run, as it ended"
+            return run_heading(scene)
         case "map":
             if scene.reading is not None:
                 return f"Map, after event {scene.reading.number}"
@@ -54,6 +54,12 @@ def heading(view: View, scene: Scene) -> str:
         case "help":
             return f"Help ({_paging(scene)})"
     return "Answers"
+
+
+def run_heading(scene: Scene) -> str:
+    """What stands above a run: whose it is stays to be read, however much is answered meanwhile."""
+    ended = not scene.running and scene.progress.started is not None
+    return "Run" + ", begun in another terminal" * scene.attached + ", as it ended" * ended
 
 
 def _paging(scene: Scene) -> str:
