@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from contextlib import closing, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Protocol
 
 from polaris_nl.automaton.automaton import Automaton
 from polaris_nl.automaton.program import Program, program_json
@@ -70,6 +71,23 @@ class RunReport:
 
 
 Sink = Callable[[Event], None]
+
+
+class CarryOut(Protocol):
+    """What runs a program: `run_simulated`, or `run_on_robot` with its profile."""
+
+    def __call__(
+        self,
+        order: RunOrder,
+        *,
+        confirmed: bool,
+        show: Sink = ...,
+        commands: Callable[[], Iterable[HumanCommand]] = ...,
+    ) -> RunReport:
+        """Runs it to its end."""
+        ...
+
+
 Connect = Callable[[LogWriter, Sink, float], Robot]
 """Makes a robot: given the log (for messages of its own), the sink of events, and the time."""
 

@@ -110,7 +110,8 @@ def _authoring(adder: _Adder) -> None:
     tui = adder.add(
         "tui",
         "edit a program on the whole screen",
-        "polaris-nl tui lunch.polaris.json --world care-home",
+        "polaris-nl tui lunch.polaris.json --world care-home\n"
+        "  polaris-nl tui lunch.polaris.json --robot stretch-sim",
     )
     tui.add_argument(
         "program",
@@ -123,6 +124,7 @@ def _authoring(adder: _Adder) -> None:
         "--plain", action="store_true", help="line by line, for screen readers and slow lines"
     )
     _world(tui)
+    _robot(tui)
 
 
 def _planning(adder: _Adder) -> None:
@@ -173,11 +175,7 @@ def _planning(adder: _Adder) -> None:
         "polaris-nl run lunch.polaris.json --people dismiss --log lunch.mcap",
     )
     _program(run)
-    run.add_argument(
-        "--robot", metavar="NAME", default="world",
-        help="world: the simulated world (default); stretch-sim: the simulated Stretch; stretch, stretch-3, "
-        "stretch-re2 or a profile file: a Stretch",
-    )  # fmt: skip
+    _robot(run)
     run.add_argument(
         "--yes",
         action="store_true",
@@ -203,6 +201,14 @@ def _planning(adder: _Adder) -> None:
     run.add_argument(
         "--live", action="store_true",
         help="in real time; type stop, pause, resume, or what happened (the resident acknowledges)",
+    )  # fmt: skip
+
+
+def _robot(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--robot", metavar="NAME", default="world",
+        help="world: the simulated world (default); stretch-sim: the simulated Stretch; stretch, stretch-3, "
+        "stretch-re2 or a profile file: a Stretch",
     )  # fmt: skip
 
 

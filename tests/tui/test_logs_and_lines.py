@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import socket
 import subprocess
 import sys
 import threading
@@ -31,7 +32,7 @@ from polaris_tui.keeping import keeping_path, leftovers, tidied
 from polaris_tui.messages import Happened, RunOver
 from polaris_tui.plain import Plain
 from polaris_tui.progress import Progress, advanced
-from polaris_tui.remote import RemoteRun, RunServer, live_runs
+from polaris_tui.remote import RemoteRun, RunServer, _short, live_runs
 from polaris_tui.replay import open_replay
 from polaris_tui.scene import Scene
 from polaris_tui.transcript import Entry
@@ -214,6 +215,33 @@ def test_a_run_is_seen_and_commanded_from_elsewhere(
     run.leave()
     with pytest.raises(RunError, match="can't be reached"):
         RemoteRun(server._path, told.append)
+
+
+def test_a_terminal_that_does_not_read_holds_nothing_up(
+    served: tuple[RunServer, SimpleQueue[HumanCommand]],
+) -> None:
+    server, commands = served
+    deaf = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+    told: list[Message] = []
+    with deaf:
+        with _short(server._path) as name:
+            deaf.connect(name)
+        reader = RemoteRun(server._path, told.append)
+        reader.start()
+        waited(lambda: len(server._clients) == 2)
+        event = Happened(Halted(time=1.0, text="x" * 100_000, reason="x", expected=[]))
+        began = time.monotonic()
+        for _ in range(100):  # 20 MB: more than any socket takes
+            server.tell(event)
+        assert time.monotonic() - began < 5.0
+        waited(lambda: len(told) == 100)
+        deaf.sendall(b'{"command": "stop"}\n')
+        assert commands.get(timeout=LIMIT_S).kind == "stop"
+        server.tell(RunOver(Entry("It is over.")))
+        reader.wait(LIMIT_S)
+        assert isinstance(told[-1], RunOver)
+        waited(lambda: not server._clients)
+        reader.leave()
 
 
 def test_runs_that_are_gone_are_forgotten(

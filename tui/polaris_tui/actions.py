@@ -216,7 +216,7 @@ ACTIONS: tuple[Action, ...] = (
     _action("Plan", "other-way", "the way before, where ways part", "", "up", _stepping, "", ("plan",)),
     _action("Plan", "first-step", "the first step", "", "home", _stepping, "", ("plan",)),
     _action("Plan", "last-step", "the last step", "", "end", _stepping, "", ("plan",)),
-    _action("Run", "run", 'run it in the simulated world; it starts after your "yes"', "f5", "", _runnable),
+    _action("Run", "run", 'run it; it starts after your "yes"', "f5", "", _runnable),
     _action("Run", "watch", "the run: what is done, expected, perceived, waited for", "", "v", _always),
     _action("Run", "pause", "pause the run, and resume it", "f6", "", _running),
     _action("Run", "stop", "stop the run, at any time", "f9 ctrl+c", "", _always, "", (), True),

@@ -14,6 +14,7 @@ from textual.events import Resize
 
 from polaris_nl.answers import change_in_words
 from polaris_nl.execution.state import HumanCommand
+from polaris_nl.model.text import capital
 from polaris_nl.render.remembered import remembered
 from polaris_nl.snapshot import Answer
 from polaris_tui import messages as told
@@ -127,6 +128,8 @@ class PolarisApp(Face):
             entries = [Entry(NO_RUN)]
         elif answer.confirmed and not starts:
             entries = [Entry(ONE_RUN if state.current else STOPPED_FIRST, "! ")]
+        elif command == "run" and self.session.awaits_yes and state.robot:
+            entries.insert(0, Entry(f"{capital(state.robot)} will move.", "! "))
         elif state.current and answer.snapshot.automaton != state.current.snapshot.automaton:
             entries.append(Entry(RUN_GOES_ON))
         state.transcript = state.transcript.answer(message.ticket, entries)

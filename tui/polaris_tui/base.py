@@ -12,6 +12,7 @@ from textual.message import Message
 from textual.widget import Widget
 
 from polaris_nl.automaton.automaton import START
+from polaris_nl.execution.ros.profile import Profile
 from polaris_nl.model.state import Mutexes
 from polaris_nl.model.wording import PlainWording
 from polaris_nl.render.explanation import offers
@@ -26,6 +27,7 @@ from polaris_tui.conversation import Conversation
 from polaris_tui.deeds import editor
 from polaris_tui.keeping import Leftover
 from polaris_tui.layout import TREE
+from polaris_tui.minutes import Minutes
 from polaris_tui.progress import Progress
 from polaris_tui.scene import Scene
 from polaris_tui.settings import Settings
@@ -47,6 +49,7 @@ class BaseApp(App[int]):
         listens_at: the folder where runs listen to other terminals; None for nowhere.
         elsewhere: where runs of this world listen that go on already.
         talk: starts listening, where something can.
+        profile: the robot that runs move; None for the simulated world.
         settings_file: where settings are, for what is said about them.
     """
 
@@ -68,6 +71,7 @@ class BaseApp(App[int]):
         listens_at: Path | None = None,
         elsewhere: Iterable[Path] = (),
         talk: Callable[[], None] | None = None,
+        profile: Profile | None = None,
         settings_file: str = "the settings",
     ) -> None:
         super().__init__()
@@ -81,6 +85,9 @@ class BaseApp(App[int]):
         self._live = live
         self._first_log = log
         self._talk = talk
+        self._profile = profile
+        self._minutes = Minutes()
+        session.report_to(self._minutes.take)
         self._patient = False  # a timer is set to show that a plan is still being made
         self._listens_at = listens_at
         self._elsewhere = tuple(elsewhere)
@@ -92,6 +99,7 @@ class BaseApp(App[int]):
             Progress(session.world.initial, activity="loading"),
             tree={"always": True, "never": False}.get(settings.tree),
             kept=kept,
+            robot=profile.title if profile is not None else "",
         )
         for theme in styles.themes():
             self.register_theme(theme)
@@ -209,6 +217,7 @@ class BaseApp(App[int]):
             state.slow,
             state.view == "map" and state.before_view == "plan" and reading is None,
             state.attached,
+            state.ran_on if state.view == "run" else state.robot,
         )
 
     def draw(self) -> None:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from polaris_nl.automaton.automaton import START
 from polaris_nl.execution.state import HumanCommand
+from polaris_nl.model.text import capital
 from polaris_tui import authoring, stepping
 from polaris_tui.actions import View
 from polaris_tui.menus import Ask, Menu, Note, Option, Perform, Step
@@ -93,9 +94,10 @@ class Going(Doing):
 
     def confirm(self, read_out: str) -> None:
         """Asks for the yes, below what will happen."""
+        robot = self._state.robot
         self.follow(
             Menu(
-                "Shall I start?",
+                f"{capital(robot)} will move. Shall I start?" if robot else "Shall I start?",
                 (
                     Option("yes, start", Perform("say", "yes")),
                     Option("no", Perform("say", "no")),

@@ -18,7 +18,7 @@ from polaris_tui.deeds import editor
 from polaris_tui.menus import Ask, Change, Menu
 from polaris_tui.pane import Pane
 from polaris_tui.phrases import Order
-from polaris_tui.progress import Progress
+from polaris_tui.progress import Activity, Progress
 from polaris_tui.running import Running
 from polaris_tui.styles import Look
 from polaris_tui.transcript import Entry
@@ -183,11 +183,13 @@ class Face(BaseApp):
 
     def _start(self, snapshot: Snapshot, plan: BranchingPlan) -> None:
         log = new_log_path(self.session.world.name, self.logs) if self.logs else None
-        run = Running(self.session, snapshot, plan, self.tell, self._live, log)
+        before, profile = self._minutes.events(), self._profile
+        run = Running(self.session, snapshot, plan, self.tell, self._live, log, before, profile)
         if self._listens_at is not None:
             run.tell = self._served(run)
-        self.state.current = run
-        self.state.progress = Progress(self.session.world.initial, activity="running")
+        self.state.current, self.state.ran_on = run, self.state.robot
+        activity: Activity = "connecting" if self.state.robot else "running"
+        self.state.progress = Progress(self.session.world.initial, activity=activity)
         if self.state.view != "map":
             self.state.view = "run"
         self.session.running = True
@@ -202,7 +204,12 @@ class Face(BaseApp):
 
         program = program_json(self.session.program_of(run.snapshot.automaton))
         plan = plan_json(run.plan, run.snapshot.automaton)
-        hello = {"world": self.session.world.name, "program": program, "plan": plan}
+        hello = {
+            "world": self.session.world.name,
+            "robot": self.state.robot,
+            "program": program,
+            "plan": plan,
+        }
         try:
             assert self._listens_at is not None
             server = RunServer(hello, run.command, self._listens_at)
@@ -212,8 +219,8 @@ class Face(BaseApp):
             return self.tell
 
         def both(message: Message) -> None:
-            server.tell(message)
             self.tell(message)
+            server.tell(message)
 
         return both
 
@@ -227,7 +234,8 @@ class Face(BaseApp):
             self.state.note(Entry(str(error), "! ", "bad"))
             return
         self._elsewhere = self._elsewhere[:-1]
-        self.state.current, self.state.ran, self.state.attached = run, run.snapshot, True
+        self.state.current, self.state.ran = run, run.snapshot
+        self.state.ran_on, self.state.attached = run.robot, True
         self.state.progress = Progress(self.session.world.initial, activity="running")
         self.state.view = "run"
         self.state.note(Entry(ATTACHED))

@@ -15,8 +15,10 @@ from textual.message import Message
 
 from polaris_nl.answers import change_in_words
 from polaris_nl.automaton.automaton import START
+from polaris_nl.execution.ros.profile import Profile
 from polaris_nl.execution.state import HumanCommand
 from polaris_nl.model.errors import PolarisError, did_you_mean
+from polaris_nl.model.text import capital
 from polaris_nl.planning.result import BranchingPlan
 from polaris_nl.render.explanation import offers
 from polaris_nl.render.layout import Row, wrapped
@@ -29,6 +31,7 @@ from polaris_tui.authoring import Desk
 from polaris_tui.choosing import Choosing
 from polaris_tui.menus import Ask, Change, Menu, Note, Perform, Step
 from polaris_tui.messages import Happened, RunOver
+from polaris_tui.minutes import Minutes
 from polaris_tui.panels import expectation_rows, map_rows, told_rows
 from polaris_tui.phrases import action_asked, order_in
 from polaris_tui.progress import Progress, advanced
@@ -53,6 +56,7 @@ class Plain:
         width: columns of a line.
         live: runs go in real time.
         logs: the folder for the logs of runs; the usual one by default.
+        profile: the robot that runs move; None for the simulated world.
     """
 
     def __init__(
@@ -63,6 +67,7 @@ class Plain:
         width: int = 78,
         live: bool = True,
         logs: Path | None = None,
+        profile: Profile | None = None,
     ) -> None:
         self._session = session
         self._show = show
@@ -70,6 +75,9 @@ class Plain:
         self._width = width
         self._live = live
         self._logs = logs
+        self._profile = profile
+        self._minutes = Minutes()
+        session.report_to(self._minutes.take)
         self._choosing = Choosing()
         self._picked = START
         self._current: Running | None = None
@@ -147,6 +155,8 @@ class Plain:
                 current.command(command)
                 return
         answer = self._session.say(line)
+        if self._profile is not None and self._session.awaits_yes:
+            self._say(f"{capital(self._profile.title)} will move.", "! ")
         for entry in answer_entries(answer):
             self._say(entry.text, entry.lead)
         plan = answer.snapshot.plan
@@ -307,7 +317,18 @@ class Plain:
             log = new_log_path(self._session.world.name, self._logs)
         self._over.clear()
         self._session.running = True
-        self._current = Running(self._session, snapshot, plan, self._happened, self._live, log)
+        self._current = Running(
+            self._session,
+            snapshot,
+            plan,
+            self._happened,
+            self._live,
+            log,
+            self._minutes.events(),
+            self._profile,
+        )
+        if self._profile is not None:
+            self._say(f"I'm looking for {self._profile.title}. Nothing has been told to move.")
         self._current.start()
 
     def _happened(self, message: Message) -> None:

@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from polaris_nl.execution.ros.profile import Profile
 from polaris_nl.model.errors import PolarisError
 from polaris_nl.session import Session
 from polaris_tui.keeping import keeping_path, leftovers, tidied
@@ -24,13 +25,20 @@ SWITCH_S = 0.001
 """How long planning may keep the interpreter from a key that was pressed; Python's own is five times that."""
 
 
-def start(session: Session, *, log: Path | None = None, plain: bool = False) -> int:
+def start(
+    session: Session,
+    *,
+    log: Path | None = None,
+    plain: bool = False,
+    profile: Profile | None = None,
+) -> int:
     """Runs the application until the user quits; returns the exit code.
 
     Args:
         session: program, language and planner; it belongs to the caller.
         log: a log to be opened at once.
         plain: line by line instead of on the whole screen.
+        profile: the robot that runs move; None for the simulated world.
 
     Raises:
         FormatError: the settings aren't as they should be.
@@ -44,7 +52,7 @@ def start(session: Session, *, log: Path | None = None, plain: bool = False) -> 
     left = leftovers(session.world.name)
     try:
         if plain:
-            return _lines(session, settings, log)
+            return _lines(session, settings, log, profile)
         from polaris_tui.app import PolarisApp
 
         app = PolarisApp(
@@ -55,6 +63,7 @@ def start(session: Session, *, log: Path | None = None, plain: bool = False) -> 
             leftovers=left,
             log=log,
             listens_at=runs_folder(),
+            profile=profile,
             elsewhere=_of_world(session.world.name),
             settings_file=str(settings_path()),
         )
@@ -108,7 +117,7 @@ def _let_go() -> None:
     os.close(nothing)
 
 
-def _lines(session: Session, settings: Settings, log: Path | None) -> int:
+def _lines(session: Session, settings: Settings, log: Path | None, profile: Profile | None) -> int:
     """The line mode."""
     from polaris_nl.commands.common import width
     from polaris_nl.model.wording import PlainWording
@@ -126,7 +135,12 @@ def _lines(session: Session, settings: Settings, log: Path | None) -> int:
         settings.keymap,
     )
     talk = Plain(
-        session, lambda line: print(line, flush=True), scene, width(), logs=settings.logs_folder
+        session,
+        lambda line: print(line, flush=True),
+        scene,
+        width(),
+        logs=settings.logs_folder,
+        profile=profile,
     )
     if log is not None:
         talk.open_log(log)

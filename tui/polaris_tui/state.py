@@ -36,6 +36,8 @@ class State:
         purposes: why actions are there, by revision and number.
         current: the run that goes on.
         ran: the program and plan of the last run.
+        robot: what runs move, such as "the simulated Stretch"; "" in the simulated world, where nothing does.
+        ran_on: what the run that goes on, or the last one, moves.
         attached: the run that goes on, or the last one, was begun in another terminal.
         awaited_plan: the plan that the last answer was about.
         awaited: ticket, revision and older plan of an answer whose plan's news are to come.
@@ -64,6 +66,8 @@ class State:
     choosing: Choosing = Choosing()
     current: Running | RemoteRun | None = None
     ran: Snapshot | None = None
+    robot: str = ""
+    ran_on: str = ""
     attached: bool = False
     awaited_plan: BranchingPlan | None = None
     awaited: tuple[int, int, BranchingPlan | None] | None = None

@@ -59,7 +59,8 @@ def heading(view: View, scene: Scene) -> str:
 def run_heading(scene: Scene) -> str:
     """What stands above a run: whose it is stays to be read, however much is answered meanwhile."""
     ended = not scene.running and scene.progress.started is not None
-    return "Run" + ", begun in another terminal" * scene.attached + ", as it ended" * ended
+    robot = f" on {plain(scene.robot)}" if scene.robot else ""
+    return f"Run{robot}" + ", begun in another terminal" * scene.attached + ", as it ended" * ended
 
 
 def _paging(scene: Scene) -> str:
@@ -195,6 +196,8 @@ def title_row(scene: Scene, width: int) -> Row:
     left = f"Polaris NL  {plain(scene.world.name)}  {plain(scene.file)}"
     if scene.snapshot.revision:
         left += f"  r{scene.snapshot.revision}"
+    if scene.robot and not scene.reading:
+        left += f"  robot: {plain(scene.robot)}"
     undoable = scene.snapshot.undoable
     key = scene.keymap.first("undo")
     right = f"{key} undoes: {plain(undoable[-1])}" if undoable and not scene.reading else ""
@@ -214,7 +217,7 @@ def status(scene: Scene) -> tuple[str, Tone]:
         return _read(scene)
     glyphs, snapshot, activity = scene.glyphs, scene.snapshot, scene.progress.activity
     if activity:
-        sign = glyphs.open if activity in ("loading", "stopping", "waiting") else ">"
+        sign = glyphs.open if activity in ("loading", "connecting", "stopping", "waiting") else ">"
         return f"{sign} {activity}", "strong"
     if snapshot.planning == "failed":
         return f"{glyphs.bad} planning failed", "bad"
