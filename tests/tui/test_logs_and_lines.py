@@ -6,7 +6,6 @@ import os
 import socket
 import subprocess
 import sys
-import threading
 import time
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
@@ -254,8 +253,12 @@ def test_runs_that_are_gone_are_forgotten(
     server._path.rename(other)
     server._path = other
     assert live_runs(folder) == [other]
-    server._socket.close()
-    waited(lambda: live_runs(folder) == [] or threading.active_count() < 2)
+    gone = folder / "2.sock"
+    with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as dead, _short(gone) as name:
+        dead.bind(name)
+    assert gone.exists()
+    assert live_runs(folder) == [other]
+    assert not gone.exists()
 
 
 # Programs without a name

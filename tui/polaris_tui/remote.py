@@ -163,17 +163,17 @@ class RemoteRun:
     def __init__(self, path: Path, tell: Tell) -> None:
         self._tell = tell
         self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+        self._lines = self._socket.makefile("rb")
         try:
             with _short(path) as name:
                 self._socket.connect(name)
-            self._lines = self._socket.makefile("rb")
             hello = json.loads(self._lines.readline())["hello"]
             automaton = program_of(hello["program"]).automaton
             self.world: str = hello["world"]
             self.robot: str = hello.get("robot", "")
             self.plan: BranchingPlan = plan_of(hello["plan"], automaton)
         except (OSError, ValueError, KeyError, PolarisError) as error:
-            self._socket.close()
+            self._close()
             raise RunError(f"The run that goes on elsewhere can't be reached ({error}).") from error
         self.snapshot = Snapshot(0, automaton, self.plan, "planned")
         self._thread = threading.Thread(target=self._read, name="remote-run", daemon=True)
@@ -195,9 +195,14 @@ class RemoteRun:
 
     def leave(self) -> None:
         """Looks no longer; the run goes on."""
-        with contextlib.suppress(OSError):
-            self._socket.shutdown(socket.SHUT_RDWR)
+        _end(self._socket)
+        if self._thread.ident is None:
+            self._close()
+
+    def _close(self) -> None:
+        """Lets the socket go; where the thread reads, that does."""
         self._socket.close()
+        self._lines.close()
 
     def wait(self, seconds: float) -> None:
         """Waits for its end."""
