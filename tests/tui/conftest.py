@@ -14,6 +14,7 @@ import pytest
 from textual.pilot import Pilot
 
 from polaris_nl.automaton.automaton import Automaton
+from polaris_nl.execution.ros.profile import Profile
 from polaris_nl.language.understanding import Understanding
 from polaris_nl.logs.reader import read_log
 from polaris_nl.logs.writer import LogWriter
@@ -165,6 +166,7 @@ def play(care_home: World, understanding: Understanding, tmp_path: Path) -> Iter
         live: bool = False,
         planner: object = None,
         settings: Settings = Settings(),
+        profile: Profile | None = None,
     ) -> Session:
         session = Session(world or care_home, program, path)
         opened.append(session)
@@ -172,7 +174,7 @@ def play(care_home: World, understanding: Understanding, tmp_path: Path) -> Iter
             session.__dict__["understanding"] = understanding
         if planner is not None:
             session.__dict__["planner"] = planner
-        app = PolarisApp(session, settings, live=live, logs=tmp_path / "logs")
+        app = PolarisApp(session, settings, live=live, logs=tmp_path / "logs", profile=profile)
 
         async def act() -> None:
             async with app.run_test(size=size) as pilot:

@@ -13,7 +13,6 @@ from dataclasses import replace
 from textual.events import Resize
 
 from polaris_nl.answers import change_in_words
-from polaris_nl.execution.state import HumanCommand
 from polaris_nl.model.text import capital
 from polaris_nl.render.remembered import remembered
 from polaris_nl.snapshot import Answer
@@ -35,7 +34,7 @@ PATIENCE_S = 0.15
 SLOW_S = 0.5
 """How often the parts of a plan that takes long are shown."""
 END_S = 5.0
-"""How long leaving waits for a run to stop, and for what the session is doing."""
+"""How long leaving waits for what the session is doing."""
 
 NO_FILE = "Nothing is saved without a program file; to keep this, start with: polaris-nl tui FILE"
 KEPT = "This program has no name yet, and is kept all the same; :save-as gives it one."
@@ -76,12 +75,15 @@ class PolarisApp(Face):
         if current is not None and not self.is_headless and gone:
             self.state.hung_up = True
         if isinstance(current, Running) and not self.state.hung_up:
-            current.command(HumanCommand("stop"))
-            current.wait(END_S)
+            current.end()
         elif current is not None and not isinstance(current, Running):
             current.leave()
             current.wait(END_S)
         self._conversation.end(END_S)
+
+    async def action_quit(self) -> None:
+        """Textual's own key for quitting, too, stops a run first."""
+        self.action_do("quit")
 
     def on_hung_up(self) -> None:
         """The terminal is gone: leaves it alone, and lets a run go on (see `remote`)."""

@@ -79,6 +79,7 @@ class Face(BaseApp):
         """Opens the program in the user's editor, and takes what it leaves."""
         import shlex
         import subprocess
+        import sys
         import tempfile
 
         with tempfile.TemporaryDirectory() as folder:
@@ -86,7 +87,8 @@ class Face(BaseApp):
             try:
                 write_program(self.session.program, path)
                 with self.suspend():
-                    subprocess.run([*shlex.split(editor()), str(path)], check=False)
+                    command = [*shlex.split(editor()), str(path)]
+                    subprocess.run(command, check=False, stderr=sys.__stderr__)
                 kept = path.rename(Path(folder) / "edited.polaris.json")
                 from polaris_nl.automaton.edits import ReplaceProgram
                 from polaris_nl.automaton.program import read_program

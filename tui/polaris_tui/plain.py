@@ -41,7 +41,6 @@ from polaris_tui.scene import Reading, Scene
 from polaris_tui.transcript import answer_entries, event_entry
 from polaris_tui.views import outline_rows, status, trouble_rows
 
-END_S = 5.0
 HINT = "Say what the robot should achieve. A colon lists what else can be done; help tells more."
 NOT_HERE = "That is about the screen, and there is none here."
 
@@ -130,8 +129,7 @@ class Plain:
             if self._leaving:
                 break
         if self._current is not None:
-            self._order("stop")
-            self._current.wait(END_S)
+            self._current.end()
 
     def _take(self, line: str) -> None:
         if self._choosing.last is not None:

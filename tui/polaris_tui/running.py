@@ -24,6 +24,11 @@ from polaris_tui.transcript import Entry
 if TYPE_CHECKING:
     from polaris_nl.runs import CarryOut, RunReport
 
+END_S = 5.0
+"""How long a run in the simulated world may take to stop."""
+ROBOT_END_S = 30.0
+"""The same on a robot: longer than one may take to answer, or to stand still."""
+
 
 class Running:
     """One run, after its yes.
@@ -77,6 +82,11 @@ class Running:
     def wait(self, seconds: float | None) -> None:
         """Waits for its end; for ever where no time is given."""
         self._thread.join(seconds)
+
+    def end(self) -> None:
+        """Stops it and waits for that, as long as it may take: a robot is let go of before its program ends."""
+        self.command(HumanCommand("stop"))
+        self.wait(END_S if self._profile is None else ROBOT_END_S)
 
     def _taken(self) -> Iterable[HumanCommand]:
         while not self._commands.empty():

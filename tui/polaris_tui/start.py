@@ -12,17 +12,21 @@ from typing import TYPE_CHECKING
 from polaris_nl.execution.ros.profile import Profile
 from polaris_nl.model.errors import PolarisError
 from polaris_nl.session import Session
-from polaris_tui.keeping import keeping_path, leftovers, tidied
+from polaris_tui.keeping import keeping_path, leftovers, state_folder, tidied
 from polaris_tui.messages import HungUp
 from polaris_tui.remote import live_runs, runs_folder
 from polaris_tui.running import Running
 from polaris_tui.settings import Settings, read_settings, settings_path
+from polaris_tui.terminal import alone_on_the_terminal
 
 if TYPE_CHECKING:
     from polaris_tui.app import PolarisApp
 
 SWITCH_S = 0.001
 """How long planning may keep the interpreter from a key that was pressed; Python's own is five times that."""
+
+MESSAGES = "messages.txt"
+"""What libraries write to the error output meanwhile, in the state folder."""
 
 
 def start(
@@ -55,19 +59,20 @@ def start(
             return _lines(session, settings, log, profile)
         from polaris_tui.app import PolarisApp
 
-        app = PolarisApp(
-            session,
-            settings,
-            logs=settings.logs_folder,
-            kept=kept and kept_at is not None,
-            leftovers=left,
-            log=log,
-            listens_at=runs_folder(),
-            profile=profile,
-            elsewhere=_of_world(session.world.name),
-            settings_file=str(settings_path()),
-        )
-        code = _on_the_screen(app, settings.mouse)
+        with alone_on_the_terminal(state_folder() / MESSAGES):
+            app = PolarisApp(
+                session,
+                settings,
+                logs=settings.logs_folder,
+                kept=kept and kept_at is not None,
+                leftovers=left,
+                log=log,
+                listens_at=runs_folder(),
+                profile=profile,
+                elsewhere=_of_world(session.world.name),
+                settings_file=str(settings_path()),
+            )
+            code = _on_the_screen(app, settings.mouse)
     finally:
         if kept and kept_at is not None and tidied(kept_at) and session.path == kept_at:
             sys.stdout.write(f"The program is kept. Go on with: polaris-nl tui {kept_at}\n")
@@ -112,7 +117,8 @@ def _on_the_screen(app: PolarisApp, mouse: bool) -> int | None:
 def _let_go() -> None:
     """Takes nothing from the terminal that is gone, and gives it nothing: both would fail."""
     nothing = os.open(os.devnull, os.O_RDWR)
-    for stream in (0, 1, 2):
+    screen = sys.__stderr__.fileno() if sys.__stderr__ is not None else 2
+    for stream in (0, 1, 2, screen):
         os.dup2(nothing, stream)
     os.close(nothing)
 
