@@ -16,7 +16,7 @@ from textual.message import Message
 
 from polaris_nl.automaton.automaton import Automaton
 from polaris_nl.automaton.program import Program, program_json, write_program
-from polaris_nl.execution.events import GoalSent, Halted, RunStarted
+from polaris_nl.execution.events import GoalSent, Halted, Heard, Planned, RunStarted
 from polaris_nl.execution.state import HumanCommand
 from polaris_nl.language.understanding import Understanding
 from polaris_nl.logs.reader import read_log
@@ -85,6 +85,22 @@ def test_what_led_to_an_event(log: Path, care_home: World) -> None:
     last = replay.chain(len(replay.events))
     assert decided not in last  # another decision came after it
     assert last == sorted(last)
+
+
+def test_a_log_says_what_the_program_came_from(play: Play, tmp_path: Path) -> None:
+    async def script(stage: Stage) -> None:
+        await stage.say(LUNCH)
+        await stage.say("what will you do?")
+        await stage.say("run it")
+        await stage.say("yes")
+        await stage.see("Objectives: 3 of 3")
+
+    session = play(script)
+    (path,) = (tmp_path / "logs").glob("*.mcap")
+    replay = open_replay(path, session.world)
+    events = [replay.events[n - 1] for n in replay.chain(len(replay.events))]
+    assert [e.utterance for e in events if isinstance(e, Heard)] == [LUNCH, "yes"]
+    assert [type(e) for e in replay.events].count(Planned) == 1
 
 
 def halted(log: Path, folder: Path) -> Path:

@@ -102,6 +102,9 @@ class Replay:
         started = next((n for n, e in reversed(before) if isinstance(e, RunStarted)), 0)
         for kind in BEFORE_A_RUN:
             found.update(_last(before, kind, started or number))
+        # The last words before a run are the yes to it; those that made the program came earlier.
+        for edited in _last(before, Edited, started or number):
+            found.update(_last(before, Heard, edited))
         decided = max(_last(before, TransitionTaken, number), default=0)
         if isinstance(self.events[number - 1], TransitionTaken):
             decided = number
