@@ -102,6 +102,14 @@ def test_a_log_says_what_the_program_came_from(play: Play, tmp_path: Path) -> No
     assert [e.utterance for e in events if isinstance(e, Heard)] == [LUNCH, "yes"]
     assert [type(e) for e in replay.events].count(Planned) == 1
 
+    async def reviewed(stage: Stage) -> None:
+        stage.app.open_log(path)
+        await stage.see("Typed: Tell the resident that lunch is ready.", "0.0 s   The run starts.")
+        await stage.press("end", "c")
+        await stage.see("What led to event", "Typed: yes")
+
+    play(reviewed, size=(100, 60))
+
 
 def halted(log: Path, folder: Path) -> Path:
     """The log, cut short by a halt."""

@@ -82,7 +82,8 @@ class Replay:
         if words:
             tests = matcher(words.split())
             return [number for number, _ in filtered(list(self.events), tests)]
-        return [n for n, e in enumerate(self.events, 1) if e.text and e.severity != "debug"]
+        told = (n for n, e in enumerate(self.events, 1) if e.text or isinstance(e, Heard))
+        return [n for n in told if self.events[n - 1].severity != "debug"]
 
     def problem(self, after: int, step: int) -> int | None:
         """The next problem after an event, or with a step of -1 the last one before it."""
