@@ -24,6 +24,7 @@ from polaris_nl.planning.compile import Draft
 from polaris_nl.runs import RunOrder, run_simulated
 from polaris_nl.session import Session
 from polaris_tui.app import PolarisApp
+from polaris_tui.base import MakeTalking
 from polaris_tui.pane import Pane
 from polaris_tui.prompt import Prompt
 from polaris_tui.settings import Settings
@@ -147,7 +148,7 @@ def _no_color(monkeypatch: pytest.MonkeyPatch) -> None:
 def _no_threads() -> Iterator[None]:
     """Neither a conversation nor a run outlives its screen."""
     yield
-    left = [t.name for t in threading.enumerate() if t.name in ("conversation", "run")]
+    left = [t.name for t in threading.enumerate() if t.name in ("conversation", "run", "talking")]
     assert not left
 
 
@@ -167,6 +168,7 @@ def play(care_home: World, understanding: Understanding, tmp_path: Path) -> Iter
         planner: object = None,
         settings: Settings = Settings(),
         profile: Profile | None = None,
+        talk: MakeTalking | None = None,
     ) -> Session:
         session = Session(world or care_home, program, path)
         opened.append(session)
@@ -174,7 +176,9 @@ def play(care_home: World, understanding: Understanding, tmp_path: Path) -> Iter
             session.__dict__["understanding"] = understanding
         if planner is not None:
             session.__dict__["planner"] = planner
-        app = PolarisApp(session, settings, live=live, logs=tmp_path / "logs", profile=profile)
+        app = PolarisApp(
+            session, settings, live=live, logs=tmp_path / "logs", profile=profile, talk=talk
+        )
 
         async def act() -> None:
             async with app.run_test(size=size) as pilot:

@@ -222,7 +222,7 @@ ACTIONS: tuple[Action, ...] = (
     _action("Run", "stop", "stop the run, at any time", "f9 ctrl+c", "", _always, "", (), True),
     _action("Run", "tell", "tell the robot what has happened", "ctrl+t", "t", _waiting, "tell"),
     _action("Run", "attach", "see a run that goes on without its terminal", "", "", _elsewhere),
-    _action("Run", "talk", "push to talk", "ctrl+at", "", _listens),
+    _action("Run", "talk", "push to talk: what is said is taken as if typed", "ctrl+@ ctrl+g", "", _listens),
     _action("Review", "log", "open the log of a run", "", "l", _always),
     _action("Review", "next-problem", "the next problem", "", "n", _reviewing, "next problem", ("review",)),
     _action("Review", "last-problem", "the problem before", "", "N", _reviewing, "", ("review",)),
@@ -264,7 +264,7 @@ _SHOWN = {
     "enter": "Enter",
     "pageup": "PgUp",
     "pagedown": "PgDn",
-    "ctrl+at": "ctrl+space",
+    "ctrl+@": "ctrl+space",
 }
 
 
@@ -323,7 +323,7 @@ def _changed(action: Action, keys: tuple[str, ...] | None) -> Action:
     """An action with the user's keys: letters stay letters, others work everywhere."""
     if keys is None:
         return action
-    letters = tuple(k for k in keys if len(k) == 1 or k in _SHOWN)
+    letters = tuple(k for k in keys if len(k) == 1 or (k in _SHOWN and not k.startswith("ctrl+")))
     return replace(action, keys=tuple(k for k in keys if k not in letters), letters=letters)
 
 

@@ -7,7 +7,7 @@ back is a message here. Each message makes a new scene, and the panes are drawn 
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
 from textual.events import Resize
@@ -22,6 +22,7 @@ from polaris_tui.board import Board
 from polaris_tui.completion import names_of
 from polaris_tui.deeds import Deeds
 from polaris_tui.face import Face
+from polaris_tui.messages import VoiceState
 from polaris_tui.pane import Pane
 from polaris_tui.phrases import Order, action_asked, order_in, view_asked
 from polaris_tui.progress import advanced
@@ -35,6 +36,18 @@ SLOW_S = 0.5
 """How often the parts of a plan that takes long are shown."""
 END_S = 5.0
 """How long leaving waits for what the session is doing."""
+
+VOICE: Mapping[VoiceState, str] = {
+    "": "",
+    "opening": "opening the microphone",
+    "listening": "listening",
+    "waiting": '{key} to talk; "stop" works',
+    "asleep": "asleep",
+    "speaking": "speaking",
+    "deaf": "no microphone",
+    "off": "",
+}
+"""What the status line says about the voice."""
 
 NO_FILE = "Nothing is saved without a program file; to keep this, start with: polaris-nl tui FILE"
 KEPT = "This program has no name yet, and is kept all the same; :save-as gives it one."
@@ -70,6 +83,8 @@ class PolarisApp(Face):
     def on_unmount(self) -> None:
         """Leaves no thread behind that still uses the session."""
         self._unsubscribe()
+        if self.talking is not None:
+            self.talking.end()
         current = self.state.current
         gone = sys.__stdin__ is None or not sys.__stdin__.isatty()
         if current is not None and not self.is_headless and gone:
@@ -99,6 +114,8 @@ class PolarisApp(Face):
             self.state.wording = remembered(self.session.wording)
         if self._elsewhere:
             self.attach()
+        if self.talking is not None and self.talking.at_once:
+            self.talking.begin()
         self.draw()
 
     def on_changed(self) -> None:
@@ -225,6 +242,37 @@ class PolarisApp(Face):
         entry = event_entry(event, event.time - started, state.glyphs)
         if entry is not None:
             state.note(entry)
+        self.draw()
+
+    def on_listened(self, message: told.Listened) -> None:
+        """Shows whether it listens; why not, where it can't."""
+        if message.text:
+            lead = "! " if message.state == "deaf" else "  "
+            self.state.note(Entry(message.text, lead))
+        if message.state:
+            key = self.keymap.first("talk")
+            self.state.voice = VOICE[message.state].format(key=key)
+        self.draw()
+
+    def on_ordered(self, message: told.Ordered) -> None:
+        """Shows that "stop" or "pause" was heard, and sees to it also where a run has begun just now."""
+        self.state.voice = f"heard: {message.order}"
+        if self.state.current is not None:
+            self.state.note(said=self.state.voice)
+        self.order(message.order)
+        self.draw()
+
+    def on_spoken(self, message: told.Spoken) -> None:
+        """Shows what was heard, and what came of it, as if it was typed."""
+        reply, state = message.reply, self.state
+        state.voice = f"heard: {reply.said.text}"
+        if reply.answer is not None:
+            if reply.answer.interpretation.command in ("yes", "no"):
+                self.deeds.close()
+            ticket = state.note(said=state.voice)
+            self.on_answered(told.Answered(ticket, reply.answer))
+        elif reply.text:
+            state.note(Entry(reply.text), said=state.voice)
         self.draw()
 
     def on_run_over(self, message: told.RunOver) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable, Iterable
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import ClassVar
 
@@ -33,6 +34,9 @@ from polaris_tui.scene import Scene
 from polaris_tui.settings import Settings
 from polaris_tui.state import State
 from polaris_tui.styles import LOOKS
+from polaris_tui.talking import Current, Talking, Tell
+
+MakeTalking = Callable[[Session, AbstractContextManager[object], Tell, Current], Talking]
 
 
 class BaseApp(App[int]):
@@ -48,7 +52,7 @@ class BaseApp(App[int]):
         log: a log to be opened at once.
         listens_at: the folder where runs listen to other terminals; None for nowhere.
         elsewhere: where runs of this world listen that go on already.
-        talk: starts listening, where something can.
+        talk: makes what listens to speech; None where nothing can.
         profile: the robot that runs move; None for the simulated world.
         settings_file: where settings are, for what is said about them.
     """
@@ -70,7 +74,7 @@ class BaseApp(App[int]):
         log: Path | None = None,
         listens_at: Path | None = None,
         elsewhere: Iterable[Path] = (),
-        talk: Callable[[], None] | None = None,
+        talk: MakeTalking | None = None,
         profile: Profile | None = None,
         settings_file: str = "the settings",
     ) -> None:
@@ -84,7 +88,6 @@ class BaseApp(App[int]):
         self.animation_level = "none"
         self._live = live
         self._first_log = log
-        self._talk = talk
         self._profile = profile
         self._minutes = Minutes()
         session.report_to(self._minutes.take)
@@ -107,6 +110,11 @@ class BaseApp(App[int]):
         self._unsubscribe: Callable[[], None] = lambda: None
         self._focused_before: Widget | None = None
         self._conversation = Conversation(session, self.tell)
+        self.talking: Talking | None = None
+        if talk is not None:
+            self.talking = talk(
+                session, self._conversation.turn, self.tell, lambda: self.state.current
+            )
         self.board = self.make_board()
         for action in self.keymap.actions:
             if action.keys:
@@ -175,7 +183,7 @@ class BaseApp(App[int]):
             loose=len(automaton.transitions) < len(automaton.checkpoints) - 1,
             elsewhere=bool(self._elsewhere),
             leftover=bool(self.leftovers),
-            listens=self._talk is not None,
+            listens=self.talking is not None,
             editor=bool(editor()),
         )
 
@@ -218,6 +226,7 @@ class BaseApp(App[int]):
             state.view == "map" and state.before_view == "plan" and reading is None,
             state.attached,
             state.ran_on if state.view == "run" else state.robot,
+            state.voice,
         )
 
     def draw(self) -> None:

@@ -59,6 +59,9 @@ class Conversation:
         self._session = session
         self._tell = tell
         self._ended = False
+        self.turn = (
+            threading.Lock()
+        )  # Held while something is carried out; speech waits for it, too.
         self._put_in = self._done = 0  # Each is counted in one thread alone.
         self._reasons: Reasons | None = None
         self._jobs: queue.SimpleQueue[_Job | None] = queue.SimpleQueue()
@@ -120,7 +123,8 @@ class Conversation:
     def _work(self) -> None:
         while (job := self._jobs.get()) is not None and not self._ended:
             try:
-                job.work()
+                with self.turn:
+                    job.work()
             except PolarisError as error:
                 self._tell(Told(job.ticket, Entry(str(error), "! ", "bad")))
             except Exception as error:

@@ -71,9 +71,9 @@ class Face(BaseApp):
         self._conversation.open_log(path, self.state.note(said=f"log {path.name}"))
 
     def talk(self) -> None:
-        """Starts listening."""
-        if self._talk is not None:
-            self._talk()
+        """Starts listening, or listens again."""
+        if self.talking is not None:
+            self.talking.key()
 
     def edit_file(self) -> None:
         """Opens the program in the user's editor, and takes what it leaves."""

@@ -56,6 +56,7 @@ class Scene:
         picked: the checkpoint that is picked.
         stepping: the map is of the step that is picked.
         attached: the run was begun in another terminal.
+        voice: whether the microphone is open, and what was heard last, in a few words.
         robot: what the run that is shown moves, or the next one; "" in the simulated world.
         slow: the plan has been in the making for so long that the screen says so.
     """
@@ -79,6 +80,7 @@ class Scene:
     stepping: bool = False
     attached: bool = False
     robot: str = ""
+    voice: str = ""
 
     @property
     def running(self) -> bool:

@@ -6,6 +6,7 @@ import contextlib
 import os
 import signal
 import sys
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,9 +18,12 @@ from polaris_tui.messages import HungUp
 from polaris_tui.remote import live_runs, runs_folder
 from polaris_tui.running import Running
 from polaris_tui.settings import Settings, read_settings, settings_path
+from polaris_tui.talking import Talking
 from polaris_tui.terminal import alone_on_the_terminal
 
 if TYPE_CHECKING:
+    from polaris_nl.speech.modes import Mode
+    from polaris_nl.speech.sources import Source
     from polaris_tui.app import PolarisApp
 
 SWITCH_S = 0.001
@@ -35,6 +39,8 @@ def start(
     log: Path | None = None,
     plain: bool = False,
     profile: Profile | None = None,
+    mic: Source | None = None,
+    mode: Mode = "talk",
 ) -> int:
     """Runs the application until the user quits; returns the exit code.
 
@@ -43,6 +49,8 @@ def start(
         log: a log to be opened at once.
         plain: line by line instead of on the whole screen.
         profile: the robot that runs move; None for the simulated world.
+        mic: where speech comes from; None for this machine's microphone, once it is asked for.
+        mode: when speech is meant for the robot.
 
     Raises:
         FormatError: the settings aren't as they should be.
@@ -69,6 +77,7 @@ def start(
                 log=log,
                 listens_at=runs_folder(),
                 profile=profile,
+                talk=partial(Talking, mic, mode),
                 elsewhere=_of_world(session.world.name),
                 settings_file=str(settings_path()),
             )

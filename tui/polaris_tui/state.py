@@ -38,6 +38,7 @@ class State:
         ran: the program and plan of the last run.
         robot: what runs move, such as "the simulated Stretch"; "" in the simulated world, where nothing does.
         ran_on: what the run that goes on, or the last one, moves.
+        voice: whether the microphone is open, and what was heard last, in a few words.
         attached: the run that goes on, or the last one, was begun in another terminal.
         awaited_plan: the plan that the last answer was about.
         awaited: ticket, revision and older plan of an answer whose plan's news are to come.
@@ -68,6 +69,7 @@ class State:
     ran: Snapshot | None = None
     robot: str = ""
     ran_on: str = ""
+    voice: str = ""
     attached: bool = False
     awaited_plan: BranchingPlan | None = None
     awaited: tuple[int, int, BranchingPlan | None] | None = None

@@ -207,6 +207,9 @@ def title_row(scene: Scene, width: int) -> Row:
 def status_row(scene: Scene, width: int, place: str) -> Row:
     """How program and plan are, by sign and word, and the first keys to know."""
     text, tone = status(scene)
+    if scene.voice:
+        heard = cut(plain(scene.voice), max(width // 3, 12), scene.glyphs.more)
+        text = f"{text}  ({heard})"
     shown = footer(place, scene.keymap, scene.now, width - cells(text) - 2)
     return Row(_apart(text, shown, width, scene.glyphs), tone)
 
