@@ -26,7 +26,6 @@ from polaris_tui.messages import VoiceState
 from polaris_tui.pane import Pane
 from polaris_tui.phrases import Order, action_asked, order_in, view_asked
 from polaris_tui.progress import advanced
-from polaris_tui.running import Running
 from polaris_tui.scene import Reading
 from polaris_tui.transcript import Entry, answer_entries, event_entry
 
@@ -89,11 +88,8 @@ class PolarisApp(Face):
         gone = sys.__stdin__ is None or not sys.__stdin__.isatty()
         if current is not None and not self.is_headless and gone:
             self.state.hung_up = True
-        if isinstance(current, Running) and not self.state.hung_up:
+        if current is not None and not (current.ours and self.state.hung_up):
             current.end()
-        elif current is not None and not isinstance(current, Running):
-            current.leave()
-            current.wait(END_S)
         self._conversation.end(END_S)
 
     async def action_quit(self) -> None:

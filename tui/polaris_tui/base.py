@@ -22,19 +22,20 @@ from polaris_nl.session import Session
 from polaris_nl.snapshot import Snapshot
 from polaris_tui import stepping, styles
 from polaris_tui.actions import Keymap, Situation
-from polaris_tui.authoring import Desk
 from polaris_tui.board import Board
 from polaris_tui.conversation import Conversation
-from polaris_tui.deeds import editor
+from polaris_tui.desk import Desk
+from polaris_tui.editor import editor
 from polaris_tui.keeping import Leftover
 from polaris_tui.layout import TREE
 from polaris_tui.minutes import Minutes
 from polaris_tui.progress import Progress
+from polaris_tui.running import Current
 from polaris_tui.scene import Scene
 from polaris_tui.settings import Settings
 from polaris_tui.state import State
 from polaris_tui.styles import LOOKS
-from polaris_tui.talking import Current, Talking, Tell
+from polaris_tui.talking import Talking, Tell
 
 MakeTalking = Callable[[Session, AbstractContextManager[object], Tell, Current], Talking]
 

@@ -11,7 +11,6 @@ import threading
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from textual.message import Message
 
@@ -25,13 +24,8 @@ from polaris_nl.render.program import numbered
 from polaris_nl.session import Session
 from polaris_tui.menus import Change
 from polaris_tui.messages import Answered, Edited, Explained, Opened, Told, Warmed
+from polaris_tui.running import Run
 from polaris_tui.transcript import Entry
-
-if TYPE_CHECKING:
-    from polaris_tui.remote import RemoteRun
-    from polaris_tui.running import Running
-
-    Run = Running | RemoteRun
 
 ANSWER_WAIT_S = 1.0
 """How long an answer waits for the plan; the plan's news come later then."""

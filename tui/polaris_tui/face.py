@@ -8,13 +8,13 @@ from pathlib import Path
 from textual.message import Message
 
 from polaris_nl.automaton.automaton import Automaton
-from polaris_nl.automaton.program import write_program
+from polaris_nl.automaton.edits import ReplaceProgram
 from polaris_nl.logs.paths import new_log_path
 from polaris_nl.model.errors import PolarisError
 from polaris_nl.planning.result import BranchingPlan
 from polaris_nl.snapshot import Snapshot
 from polaris_tui.base import BaseApp
-from polaris_tui.deeds import editor
+from polaris_tui.editor import edited
 from polaris_tui.menus import Ask, Change, Menu
 from polaris_tui.pane import Pane
 from polaris_tui.phrases import Order
@@ -77,26 +77,11 @@ class Face(BaseApp):
 
     def edit_file(self) -> None:
         """Opens the program in the user's editor, and takes what it leaves."""
-        import shlex
-        import subprocess
-        import sys
-        import tempfile
-
-        with tempfile.TemporaryDirectory() as folder:
-            path = Path(folder) / "program.polaris.json"
-            try:
-                write_program(self.session.program, path)
-                with self.suspend():
-                    command = [*shlex.split(editor()), str(path)]
-                    subprocess.run(command, check=False, stderr=sys.__stderr__)
-                kept = path.rename(Path(folder) / "edited.polaris.json")
-                from polaris_nl.automaton.edits import ReplaceProgram
-                from polaris_nl.automaton.program import read_program
-
-                program = read_program(kept).automaton
-            except (PolarisError, OSError) as error:
-                self.state.note(Entry(f"The program stays as it was. {error}", "! ", "bad"))
-                return
+        try:
+            program = edited(self.session.program, self.suspend())
+        except (PolarisError, OSError) as error:
+            self.state.note(Entry(f"The program stays as it was. {error}", "! ", "bad"))
+            return
         if program == self.session.snapshot.automaton:
             self.state.note(Entry("Nothing was changed."))
         else:
@@ -169,7 +154,8 @@ class Face(BaseApp):
 
     def leave(self) -> None:
         """Quits; a run is stopped first, and the second time nothing is waited for."""
-        if not isinstance(self.state.current, Running) or self.state.leaving:
+        current = self.state.current
+        if current is None or not current.ours or self.state.leaving:
             self.exit(0)  # A run of another terminal goes on.
             return
         self.state.leaving = True

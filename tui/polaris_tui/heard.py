@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
-from typing import TYPE_CHECKING
 
 from textual.message import Message
 
@@ -17,9 +16,7 @@ from polaris_nl.speech.hearing import Utterance
 from polaris_nl.speech.modes import State
 from polaris_tui.messages import Listened, Ordered, Spoken
 from polaris_tui.phrases import Order
-
-if TYPE_CHECKING:
-    from polaris_tui.talking import Current
+from polaris_tui.running import Current
 
 ANSWERS = {
     "stop": "Stopping.",

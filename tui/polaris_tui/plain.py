@@ -25,10 +25,10 @@ from polaris_nl.render.layout import Row, wrapped
 from polaris_nl.render.timeline import branch_stops
 from polaris_nl.session import Session
 from polaris_nl.snapshot import Snapshot
-from polaris_tui import authoring, stepping
+from polaris_tui import authoring, offering, stepping
 from polaris_tui.actions import ACTIONS, BY_ID, Situation
-from polaris_tui.authoring import Desk
 from polaris_tui.choosing import Choosing
+from polaris_tui.desk import Desk
 from polaris_tui.menus import Ask, Change, Menu, Note, Perform, Step
 from polaris_tui.messages import Happened, RunOver
 from polaris_tui.minutes import Minutes
@@ -252,11 +252,11 @@ class Plain:
     def _mend(self) -> None:
         plan = self._session.snapshot.plan
         found = offers(plan) if plan else ()
-        self._follow(authoring.mend_menu([("", r.text, r.edits) for _, r in found]))
+        self._follow(offering.mend_menu([("", r.text, r.edits) for _, r in found]))
 
     def _pick(self, about: str) -> None:
         if not about:
-            self._follow(authoring.pick_menu(self._desk()))
+            self._follow(offering.pick_menu(self._desk()))
             return
         self._picked = about
         self._say(f"You are at {self._desk().here.name}.")
@@ -271,7 +271,7 @@ class Plain:
 
     def _history(self) -> None:
         snapshot = self._session.snapshot
-        self._follow(authoring.history_menu(snapshot.undoable, snapshot.redoable))
+        self._follow(offering.history_menu(snapshot.undoable, snapshot.redoable))
 
     def _program(self) -> None:
         self._scene = replace(self._scene, reading=None)
@@ -366,13 +366,13 @@ class Plain:
         if about and self._current is not None:
             self._current.command(HumanCommand("happened", waiting[int(about) - 1]))
             return
-        self._follow(authoring.tell_menu(waiting, wording))
+        self._follow(offering.tell_menu(waiting, wording))
 
     # Logs
 
     def _log(self, about: str) -> None:
         if not about:
-            self._follow(authoring.log_menu(self._logs))
+            self._follow(offering.log_menu(self._logs))
             return
         from polaris_tui.replay import open_replay
 

@@ -160,6 +160,8 @@ class RemoteRun:
         RunError: it can't be reached, or doesn't say what it is about.
     """
 
+    ours = False
+
     def __init__(self, path: Path, tell: Tell) -> None:
         self._tell = tell
         self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
@@ -204,9 +206,14 @@ class RemoteRun:
         self._socket.close()
         self._lines.close()
 
-    def wait(self, seconds: float) -> None:
+    def wait(self, seconds: float | None) -> None:
         """Waits for its end."""
         self._thread.join(seconds)
+
+    def end(self) -> None:
+        """Looks no longer."""
+        self.leave()
+        self.wait(LAST_WORDS_S)
 
     def _read(self) -> None:
         entries = [Entry("The run's own program has ended; its log may tell more.", "! ", "bad")]

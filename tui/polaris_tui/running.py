@@ -7,7 +7,7 @@ import threading
 from collections.abc import Callable, Iterable
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from textual.message import Message
 
@@ -30,6 +30,41 @@ ROBOT_END_S = 30.0
 """The same on a robot: longer than one may take to answer, or to stand still."""
 
 
+class Run(Protocol):
+    """A run that goes on, wherever it was begun.
+
+    Attributes:
+        snapshot: the program that is carried out, with its plan.
+        plan: that plan.
+        ours: it was begun here, so that it ends with this program; the others go on without it.
+    """
+
+    snapshot: Snapshot
+    plan: BranchingPlan
+    ours: bool
+
+    @property
+    def active(self) -> bool:
+        """Whether it goes on."""
+        ...
+
+    def command(self, command: HumanCommand) -> None:
+        """Commands it, at once."""
+        ...
+
+    def wait(self, seconds: float | None) -> None:
+        """Waits for its end."""
+        ...
+
+    def end(self) -> None:
+        """Has nothing to do with it any more: stops it where it is ours, and waits for that."""
+        ...
+
+
+Current = Callable[[], Run | None]
+"""Tells which run goes on."""
+
+
 class Running:
     """One run, after its yes.
 
@@ -43,6 +78,8 @@ class Running:
         before: what led to the program, for the log.
         profile: the robot that is to move; None for the simulated world, where nothing does.
     """
+
+    ours = True
 
     def __init__(
         self,

@@ -16,7 +16,6 @@ from polaris_nl.session import Session
 from polaris_tui.keeping import keeping_path, leftovers, state_folder, tidied
 from polaris_tui.messages import HungUp
 from polaris_tui.remote import live_runs, runs_folder
-from polaris_tui.running import Running
 from polaris_tui.settings import Settings, read_settings, settings_path
 from polaris_tui.talking import Talking
 from polaris_tui.terminal import alone_on_the_terminal
@@ -118,7 +117,7 @@ def _on_the_screen(app: PolarisApp, mouse: bool) -> int | None:
             raise
     if app.state.hung_up:
         _let_go()
-        if isinstance(app.state.current, Running):
+        if app.state.current is not None and app.state.current.ours:
             app.state.current.wait(None)
     return code
 

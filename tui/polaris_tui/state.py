@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 from polaris_nl.automaton.automaton import START
 from polaris_nl.model.wording import Wording
@@ -13,14 +12,11 @@ from polaris_nl.snapshot import Snapshot
 from polaris_tui.actions import View
 from polaris_tui.choosing import Choosing
 from polaris_tui.progress import Progress
-from polaris_tui.running import Running
+from polaris_tui.running import Run
 from polaris_tui.scene import Reading
 from polaris_tui.stepping import Steps
 from polaris_tui.styles import Look
 from polaris_tui.transcript import Entry, Exchange, Transcript
-
-if TYPE_CHECKING:
-    from polaris_tui.remote import RemoteRun
 
 
 @dataclass
@@ -65,7 +61,7 @@ class State:
     reading: Reading | None = None
     read_wording: Wording | None = None
     choosing: Choosing = Choosing()
-    current: Running | RemoteRun | None = None
+    current: Run | None = None
     ran: Snapshot | None = None
     robot: str = ""
     ran_on: str = ""

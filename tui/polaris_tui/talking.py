@@ -12,17 +12,15 @@ from textual.message import Message
 from polaris_nl.model.errors import PolarisError
 from polaris_nl.session import Session
 from polaris_tui.messages import Listened
+from polaris_tui.running import Current
 
 if TYPE_CHECKING:
     from polaris_nl.hands_free.listening import Listening
     from polaris_nl.speech.ears import EarMaker
     from polaris_nl.speech.modes import Mode
     from polaris_nl.speech.sources import Source
-    from polaris_tui.remote import RemoteRun
-    from polaris_tui.running import Running
 
 Tell = Callable[[Message], object]
-Current = Callable[[], "Running | RemoteRun | None"]
 INSTALL = 'Install it with: pip install "polaris-nl[voice]"'
 END_S = 2.0
 """How long leaving waits for the microphone to be let go."""
