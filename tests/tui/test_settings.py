@@ -8,7 +8,9 @@ import pytest
 
 from polaris_nl.model.errors import FormatError
 from polaris_tui import settings as module
-from polaris_tui.actions import ACTIONS, FOOTERS, Keymap, Situation, clashes, footer
+from polaris_tui.actions import ACTIONS, Keymap, clashes
+from polaris_tui.footer import FOOTERS, footer
+from polaris_tui.reasons import Situation
 from polaris_tui.settings import Settings, read_settings
 from tests.tui.conftest import Play, Stage
 

@@ -21,7 +21,7 @@ from polaris_nl.render.timeline import Stop, branch_stops
 from polaris_nl.session import Session
 from polaris_nl.snapshot import Snapshot
 from polaris_tui import stepping, styles
-from polaris_tui.actions import Keymap, Situation
+from polaris_tui.actions import Keymap
 from polaris_tui.board import Board
 from polaris_tui.conversation import Conversation
 from polaris_tui.desk import Desk
@@ -30,6 +30,7 @@ from polaris_tui.keeping import Leftover
 from polaris_tui.layout import TREE
 from polaris_tui.minutes import Minutes
 from polaris_tui.progress import Progress
+from polaris_tui.reasons import Situation
 from polaris_tui.running import Current
 from polaris_tui.scene import Scene
 from polaris_tui.settings import Settings

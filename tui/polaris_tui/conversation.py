@@ -15,13 +15,14 @@ from pathlib import Path
 from textual.message import Message
 
 from polaris_nl.automaton.edits import ReplaceProgram
-from polaris_nl.automaton.program import read_program, write_program
-from polaris_nl.model.errors import FileError, PolarisError
+from polaris_nl.automaton.program import read_program
+from polaris_nl.model.errors import PolarisError
 from polaris_nl.model.wording import Wording
 from polaris_nl.planning.reasons import Reasons, Step
 from polaris_nl.render.explanation import purpose_in_words
 from polaris_nl.render.program import numbered
 from polaris_nl.session import Session
+from polaris_tui.keeping import saved_as
 from polaris_tui.menus import Change
 from polaris_tui.messages import Answered, Edited, Explained, Opened, Told, Warmed
 from polaris_tui.running import Run
@@ -196,13 +197,7 @@ class Conversation:
         self._edit(Change(label, (ReplaceProgram(loaded),)), ticket)
 
     def _save_as(self, path: Path, ticket: int) -> None:
-        if path.exists():
-            there = read_program(path)  # Only ever replaces a program, and never an unlike one.
-            if there != self._session.program:
-                raise FileError(f"There is another program in {path} already; choose another name.")
-        write_program(self._session.program, path)
-        self._session.path = path
-        self._tell(Told(ticket, Entry(f"Kept in {path.name} from now on.")))
+        self._tell(Told(ticket, Entry(saved_as(self._session, path))))
 
     def _explain(self, checkpoint: str, action: int | None, ticket: int) -> None:
         from polaris_nl.commands.why import Asker

@@ -8,11 +8,12 @@ from functools import partial
 
 from polaris_nl.model.errors import PolarisError
 from polaris_tui import authoring, stepping
-from polaris_tui.actions import BY_ID, View
+from polaris_tui.actions import BY_ID
 from polaris_tui.choosing import Choosing
 from polaris_tui.deeds_program import Editing
 from polaris_tui.menus import Ask, Change, Menu, Note, Option, Perform, Step
 from polaris_tui.pane import Pane
+from polaris_tui.reasons import View
 from polaris_tui.screen import Screen
 from polaris_tui.state import State
 from polaris_tui.styles import LOOKS

@@ -8,7 +8,7 @@ from polaris_nl.planning.result import Problem, Warning
 from polaris_nl.render.explanation import offers
 from polaris_tui import offering
 from polaris_tui.deeds_run import Going
-from polaris_tui.menus import Ask, Change, Menu, Option, Perform
+from polaris_tui.menus import Change
 
 
 class Editing(Going):
@@ -65,15 +65,7 @@ class Editing(Going):
         if about:
             self._app.load(Path(about), "the program of an earlier session")
             return
-        options = tuple(
-            Option(
-                self._app.read_back(left.program.automaton),
-                Perform("recover", str(left.path)),
-                left.path.name,
-            )
-            for left in self._app.leftovers
-        )
-        self.follow(Menu("Which one?", options))
+        self.follow(offering.leftover_menu(self._app.leftovers, self._app.read_back))
 
     def _shape(self) -> None:
         self._state.tree = not self._app.as_tree
@@ -82,7 +74,4 @@ class Editing(Going):
         if about:
             self._app.save_as(Path(about).expanduser())
             return
-        initial = f"{self._app.session.world.name}.polaris.json"
-        self.follow(
-            Ask("Keep the program in which file?", lambda x: Perform("save-as", x), initial)
-        )
+        self.follow(offering.save_menu(self._app.session.world.name))

@@ -9,9 +9,9 @@ from polaris_nl.automaton.automaton import START
 from polaris_nl.execution.state import HumanCommand
 from polaris_nl.model.text import capital
 from polaris_tui import offering, stepping
-from polaris_tui.actions import View
 from polaris_tui.menus import Ask, Menu, Note, Option, Perform, Step
 from polaris_tui.phrases import Order
+from polaris_tui.reasons import View
 from polaris_tui.screen import Screen
 from polaris_tui.state import State
 from polaris_tui.transcript import Entry

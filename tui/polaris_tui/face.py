@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
-
-from textual.message import Message
 
 from polaris_nl.automaton.automaton import Automaton
 from polaris_nl.automaton.edits import ReplaceProgram
@@ -19,13 +16,11 @@ from polaris_tui.menus import Ask, Change, Menu
 from polaris_tui.pane import Pane
 from polaris_tui.phrases import Order
 from polaris_tui.progress import Activity, Progress
+from polaris_tui.remote import ATTACHED, RemoteRun
 from polaris_tui.running import Running
+from polaris_tui.serving import served
 from polaris_tui.styles import Look
 from polaris_tui.transcript import Entry
-
-ATTACHED = (
-    "This run was begun in another terminal. It can be stopped from here; quitting lets it go on."
-)
 
 
 class Face(BaseApp):
@@ -174,7 +169,9 @@ class Face(BaseApp):
         before, profile = self._minutes.events(), self._profile
         run = Running(self.session, snapshot, plan, self.tell, self._live, log, before, profile)
         if self._listens_at is not None:
-            run.tell = self._served(run)
+            run.tell, trouble = served(run, self.session, self._listens_at, self.tell)
+            if trouble:
+                self.state.note(Entry(trouble, "! "))
         self.state.current, self.state.ran_on = run, self.state.robot
         activity: Activity = "connecting" if self.state.robot else "running"
         self.state.progress = Progress(self.session.world.initial, activity=activity)
@@ -184,38 +181,8 @@ class Face(BaseApp):
         self.state.ran, self.state.attached = snapshot, False
         self.state.current.start()
 
-    def _served(self, run: Running) -> Callable[[Message], object]:
-        """Lets other terminals see and command a run; returns whom it tells what happens."""
-        from polaris_nl.automaton.program import program_json
-        from polaris_nl.planning.plan_json import plan_json
-        from polaris_tui.remote import RunServer
-
-        program = program_json(self.session.program_of(run.snapshot.automaton))
-        plan = plan_json(run.plan, run.snapshot.automaton)
-        hello = {
-            "world": self.session.world.name,
-            "robot": self.state.robot,
-            "program": program,
-            "plan": plan,
-        }
-        try:
-            assert self._listens_at is not None
-            server = RunServer(hello, run.command, self._listens_at)
-        except OSError as error:
-            text = f"No other terminal will be able to stop this run ({error})."
-            self.state.note(Entry(text, "! "))
-            return self.tell
-
-        def both(message: Message) -> None:
-            self.tell(message)
-            server.tell(message)
-
-        return both
-
     def attach(self) -> None:
         """Shows the run that goes on elsewhere; it can be stopped, paused and told things from here."""
-        from polaris_tui.remote import RemoteRun
-
         try:
             run = RemoteRun(self._elsewhere[-1], self.tell)
         except PolarisError as error:

@@ -1,14 +1,17 @@
-"""Menus that lead somewhere without editing by themselves: checkpoints, ways out, logs, history. Pure functions."""
+"""Menus that lead somewhere: to checkpoints, ways out, logs, moments of the history. Pure functions."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from polaris_nl.automaton.edits import Edit
+from polaris_nl.automaton.automaton import Automaton
+from polaris_nl.automaton.edits import Edit, ReplaceProgram
+from polaris_nl.automaton.program import read_program
 from polaris_nl.model.formula import Literal
 from polaris_nl.model.wording import Wording
 from polaris_tui.desk import Desk
+from polaris_tui.keeping import Leftover
 from polaris_tui.menus import Ask, Change, Menu, Note, Option, Perform, Step
 
 MOST_LOGS = 30
@@ -80,3 +83,34 @@ def history_menu(undoable: Sequence[str], redoable: Sequence[str]) -> Step:
         count = len(undoable)
         options.append(Option("the beginning", Perform("undo", str(count)), f"undo {count}"))
     return Menu("Where to go back, or forward, to", tuple(options))
+
+
+def leftover_menu(leftovers: Sequence[Leftover], read_back: Callable[[Automaton], str]) -> Step:
+    """The programs that earlier sessions left unsaved, in words."""
+    return Menu(
+        "Which one?",
+        tuple(
+            Option(
+                read_back(left.program.automaton),
+                Perform("recover", str(left.path)),
+                left.path.name,
+            )
+            for left in leftovers
+        ),
+    )
+
+
+def recovered(path: Path) -> Change:
+    """Takes the program of an earlier session, as a step that can be undone.
+
+    Raises:
+        PolarisError: it can't be read.
+    """
+    program = read_program(path).automaton
+    return Change("the program of an earlier session", (ReplaceProgram(program),))
+
+
+def save_menu(world: str) -> Step:
+    """Asks for the file that the program is to be kept in."""
+    kept = f"{world}.polaris.json"
+    return Ask("Keep the program in which file?", lambda name: Perform("save-as", name), kept)

@@ -33,6 +33,9 @@ from polaris_tui.messages import Happened, RunOver
 from polaris_tui.replay import plan_of
 from polaris_tui.transcript import Entry
 
+ATTACHED = (
+    "This run was begun in another terminal. It can be stopped from here; quitting lets it go on."
+)
 Tell = Callable[[Message], object]
 KINDS = ("stop", "pause", "resume", "happened")
 LONGEST_PATH = 100

@@ -116,6 +116,11 @@ class Running:
         """Commands the run; it listens many times a second."""
         self._commands.put(command)
 
+    @property
+    def robot(self) -> str:
+        """What it moves, for sentences; "" in the simulated world."""
+        return self._profile.title if self._profile is not None else ""
+
     def wait(self, seconds: float | None) -> None:
         """Waits for its end; for ever where no time is given."""
         self._thread.join(seconds)

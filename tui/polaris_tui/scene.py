@@ -12,8 +12,9 @@ from polaris_nl.model.world import World
 from polaris_nl.render.glyphs import Glyphs
 from polaris_nl.render.timeline import Stop, branch_stops
 from polaris_nl.snapshot import Snapshot
-from polaris_tui.actions import Keymap, Situation
+from polaris_tui.actions import Keymap
 from polaris_tui.progress import RUNS, Progress
+from polaris_tui.reasons import Situation
 from polaris_tui.stepping import Steps
 
 if TYPE_CHECKING:

@@ -12,11 +12,12 @@ from textual.widget import Widget
 from polaris_nl.automaton.automaton import Automaton
 from polaris_nl.render.timeline import Stop
 from polaris_nl.session import Session
-from polaris_tui.actions import Keymap, Situation
+from polaris_tui.actions import Keymap
 from polaris_tui.board import Board
 from polaris_tui.desk import Desk
 from polaris_tui.keeping import Leftover
 from polaris_tui.menus import Ask, Change, Menu
+from polaris_tui.reasons import Situation
 from polaris_tui.styles import Look
 
 

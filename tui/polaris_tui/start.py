@@ -14,6 +14,7 @@ from polaris_nl.execution.ros.profile import Profile
 from polaris_nl.model.errors import PolarisError
 from polaris_nl.session import Session
 from polaris_tui.keeping import keeping_path, leftovers, state_folder, tidied
+from polaris_tui.lines import Places
 from polaris_tui.messages import HungUp
 from polaris_tui.remote import live_runs, runs_folder
 from polaris_tui.settings import Settings, read_settings, settings_path
@@ -63,7 +64,8 @@ def start(
     left = leftovers(session.world.name)
     try:
         if plain:
-            return _lines(session, settings, log, profile)
+            places = Places(tuple(left), tuple(_of_world(session.world.name)), runs_folder())
+            return _lines(session, settings, log, profile, places)
         from polaris_tui.app import PolarisApp
 
         with alone_on_the_terminal(state_folder() / MESSAGES):
@@ -131,7 +133,13 @@ def _let_go() -> None:
     os.close(nothing)
 
 
-def _lines(session: Session, settings: Settings, log: Path | None, profile: Profile | None) -> int:
+def _lines(
+    session: Session,
+    settings: Settings,
+    log: Path | None,
+    profile: Profile | None,
+    places: Places,
+) -> int:
     """The line mode."""
     from polaris_nl.commands.common import width
     from polaris_nl.model.wording import PlainWording
@@ -155,7 +163,14 @@ def _lines(session: Session, settings: Settings, log: Path | None, profile: Prof
         width(),
         logs=settings.logs_folder,
         profile=profile,
+        places=places,
     )
+
+    def hung_up(*_: object) -> None:
+        talk.hung_up = True
+        _let_go()  # Then there are no more lines to be read.
+
+    signal.signal(signal.SIGHUP, hung_up)
     if log is not None:
         talk.open_log(log)
     talk.work(typed_lines())

@@ -9,9 +9,9 @@ from polaris_nl.model.wording import Wording
 from polaris_nl.planning.result import BranchingPlan
 from polaris_nl.render.glyphs import Glyphs
 from polaris_nl.snapshot import Snapshot
-from polaris_tui.actions import View
 from polaris_tui.choosing import Choosing
 from polaris_tui.progress import Progress
+from polaris_tui.reasons import View
 from polaris_tui.running import Run
 from polaris_tui.scene import Reading
 from polaris_tui.stepping import Steps

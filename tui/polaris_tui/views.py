@@ -11,8 +11,9 @@ from polaris_nl.render.glyphs import Glyphs, cells, plain
 from polaris_nl.render.layout import Row, Tone, cut, wrapped
 from polaris_nl.render.program import program_rows
 from polaris_nl.render.tree import tree_of
-from polaris_tui.actions import View, footer
+from polaris_tui.footer import footer
 from polaris_tui.panels import map_rows, plan_rows, run_rows
+from polaris_tui.reasons import View
 from polaris_tui.reviewing import review_heading, review_rows
 from polaris_tui.scene import Scene
 
