@@ -34,6 +34,23 @@ from polaris_tui.transcript import answer_entries
 
 HINT = "Say what the robot should achieve. A colon lists what else can be done; help tells more."
 NOT_HERE = "That is about the screen, and there is none here."
+ON_SCREEN = frozenset(
+    {
+        *(
+            "shape",
+            "answers",
+            "copy",
+            "theme",
+            "open",
+            "talk",
+            "prompt",
+            "next-pane",
+            "previous-pane",
+        ),
+        *("up", "down", "left", "right", "top", "bottom", "page-up", "page-down"),
+    }
+)
+"""The actions that move about on a screen, or want one; all others can be done line by line."""
 
 
 class Plain(Commanding):

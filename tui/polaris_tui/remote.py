@@ -220,7 +220,7 @@ class RemoteRun:
 
     def _read(self) -> None:
         entries = [Entry("The run's own program has ended; its log may tell more.", "! ", "bad")]
-        with contextlib.suppress(OSError, ValueError), self._lines:
+        with contextlib.suppress(OSError, ValueError), self._socket, self._lines:
             for line in self._lines:
                 value = json.loads(line)
                 if "over" in value:
