@@ -90,7 +90,8 @@ class Keyed(Face):
             known = any(a.id == action for a in self.keymap.actions)
             self.deeds.perform(action if known else "actions")
         elif view is not None:
-            state.view = view
+            if view != state.view:  # A map after the plan is of the step that was picked there.
+                state.before_view, state.view = state.view, view
         elif line.isdecimal() and state.current and 0 < int(line) <= len(state.progress.waiting):
             self.deeds.perform("tell", line)
         else:
