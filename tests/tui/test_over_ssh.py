@@ -256,7 +256,7 @@ def test_the_caregiving_program_by_sentences_alone(
     terminal.type("run it")
     terminal.see("Shall I start? Say yes or no.")
     terminal.type("yes")
-    terminal.see("I wait.", seconds=4 * LIMIT_S)
+    terminal.see("Map, now", "I wait until", seconds=4 * LIMIT_S)
     terminal.type("she dismisses it")
     # A simulated resident may have been quicker, and have acknowledged it.
     terminal.see(": on to ")

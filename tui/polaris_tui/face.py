@@ -175,7 +175,9 @@ class Face(BaseApp):
         self.state.current, self.state.ran_on = run, self.state.robot
         activity: Activity = "connecting" if self.state.robot else "running"
         self.state.progress = Progress(self.session.world.initial, activity=activity)
-        if self.state.view != "map":
+        if self.state.view == "map":
+            self.state.before_view = "run"  # It is of the run now, no more of a step of the plan.
+        else:
             self.state.view = "run"
         self.session.running = True
         self.state.ran, self.state.attached = snapshot, False
