@@ -215,7 +215,7 @@ class PolarisApp(Keyed):
         self.state.read_wording = remembered(message.wording)
         self.state.view = "review"
         self.draw()
-        self.board.main.focus()
+        self.screen.set_focus(self.board.main)
         self.board.main.reset()
 
     def on_happened(self, message: told.Happened) -> None:

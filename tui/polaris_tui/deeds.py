@@ -170,7 +170,7 @@ class Deeds(Editing):
         state.before_view, state.view = state.view, view
         self._app.board.main.reset()
         if view in ("plan", "review"):  # There the arrows step.
-            self._app.board.main.focus()
+            self._app.screen.set_focus(self._app.board.main)
         if view == "review":
             self._app.follow_reading()
 
@@ -290,7 +290,7 @@ class Deeds(Editing):
             else:
                 self._app.ask(state.choosing.last)
         elif not self._app.board.prompt.has_focus:
-            self._app.board.prompt.focus()
+            self._app.screen.set_focus(self._app.board.prompt)
         elif state.view != "program":
             state.view = self._home if state.view != "review" else "program"
             state.reading = state.reading if state.view == "review" else None

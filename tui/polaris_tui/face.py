@@ -99,13 +99,13 @@ class Face(BaseApp):
             self.board.prompt.serve("ask", question.initial)
         else:
             self.board.prompt.serve("menu")
-        self.board.prompt.focus()
+        self.screen.set_focus(self.board.prompt)
 
     def asked_enough(self) -> None:
         """Gives the input line back to sentences, and the focus to where it was."""
         self.board.prompt.serve("sentence")
         if self._focused_before is not None:
-            self._focused_before.focus()
+            self.screen.set_focus(self._focused_before)
         self._focused_before = None
 
     def pick(self, checkpoint: str) -> None:
@@ -113,7 +113,7 @@ class Face(BaseApp):
         self.state.view = "program"
         self.state.picked = checkpoint
         self.draw()
-        self.board.main.focus()
+        self.screen.set_focus(self.board.main)
         self.board.main.pick(checkpoint)
 
     def tell_briefly(self, text: str) -> None:
