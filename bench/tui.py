@@ -34,8 +34,8 @@ SENTENCES = (
 KEYS = "wait until"
 KEYS_ALONE = "QXZ@~^`{}|"
 """Keys that are in nothing else that the terminal is sent."""
-DOWN = b"\x1b[B"
-RIGHT = b"\x1b[C"
+UP = b"\x1b[A"
+LEFT = b"\x1b[D"
 
 
 def _homes(folder: Path) -> dict[str, str]:
@@ -190,18 +190,26 @@ def plans(terminal: Terminal) -> Iterator[int]:
 
 
 def moves(terminal: Terminal) -> Iterator[int]:
-    """Bytes for each step of the cursor in the program."""
+    """Bytes for each step of the cursor in the program, up from what was changed last."""
     terminal.send(b"\t")
     terminal.read()
     for _ in range(8):
-        terminal.send(DOWN)
-        yield len(terminal.read())
+        terminal.send(UP)
+        yield _answered(terminal)
 
 
 def steps(terminal: Terminal) -> Iterator[int]:
-    """Bytes for each step of the plan, step by step, with the map below it."""
+    """Bytes for each step of the plan, back from where the cursor was, with the map below it."""
     terminal.send(b"\x1bOS")
     terminal.read()
     for _ in range(8):
-        terminal.send(RIGHT)
-        yield len(terminal.read())
+        terminal.send(LEFT)
+        yield _answered(terminal)
+
+
+def _answered(terminal: Terminal) -> int:
+    """The bytes that a key brings; a key that changes nothing measures nothing."""
+    found = len(terminal.read())
+    if not found:
+        raise RuntimeError("A key that was measured did nothing.")
+    return found

@@ -126,7 +126,8 @@ def _authoring(adder: _Adder) -> None:
     tui = adder.add(
         "tui",
         "edit a program on the whole screen",
-        "polaris-nl tui lunch.polaris.json --world care-home",
+        "polaris-nl tui lunch.polaris.json --world care-home\n"
+        "  polaris-nl tui lunch.polaris.json --robot stretch-sim",
     )
     tui.add_argument(
         "program",
@@ -139,6 +140,12 @@ def _authoring(adder: _Adder) -> None:
         "--plain", action="store_true", help="line by line, for screen readers and slow lines"
     )
     _world(tui)
+    _robot(tui)
+    _microphone(tui)
+    tui.add_argument(
+        "--mode", choices=("talk", "always", "wake"), default="talk",
+        help="listen after ctrl+space (default), always, or after the words \"hey jarvis\"",
+    )  # fmt: skip
 
 
 def _planning(adder: _Adder) -> None:
@@ -227,6 +234,17 @@ def _robot(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
 
 
+def _microphone(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--mic", metavar="NAME|FILE|tcp://HOST:PORT",
+        help="a microphone's name or number, a recording, a named pipe, or a Wyoming microphone",
+    )  # fmt: skip
+    parser.add_argument(
+        "--allow-remote", action="store_true",
+        help="let a microphone be on another machine without a tunnel",
+    )  # fmt: skip
+
+
 def _speaking(adder: _Adder) -> None:
     transcribe = adder.add(
         "transcribe",
@@ -259,10 +277,7 @@ def _speaking(adder: _Adder) -> None:
     _recogniser(listen)
     _program_option(listen)
     _world(listen)
-    listen.add_argument(
-        "--mic", metavar="NAME|FILE|tcp://HOST:PORT",
-        help="a microphone's name or number, a recording, a named pipe, or a Wyoming microphone",
-    )  # fmt: skip
+    _microphone(listen)
     listen.add_argument(
         "--mode", choices=("always", "wake", "talk"), default="always",
         help="listen always (default), after the words \"hey jarvis\", or after Enter",
@@ -276,10 +291,6 @@ def _speaking(adder: _Adder) -> None:
     listen.add_argument(
         "--record", action="store_true", help="keep the sound of it in the log, too"
     )
-    listen.add_argument(
-        "--allow-remote", action="store_true",
-        help="let a microphone be on another machine without a tunnel",
-    )  # fmt: skip
     listen.add_argument("--microphones", action="store_true", help="list the microphones")
     listen.add_argument("--level", action="store_true", help="measure how loud the microphone is")
     models = adder.add("models", "fetch the speech model", "polaris-nl models")

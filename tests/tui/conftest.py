@@ -14,6 +14,7 @@ import pytest
 from textual.pilot import Pilot
 
 from polaris_nl.automaton.automaton import Automaton
+from polaris_nl.execution.ros.profile import Profile
 from polaris_nl.language.understanding import Understanding
 from polaris_nl.logs.reader import read_log
 from polaris_nl.logs.writer import LogWriter
@@ -23,6 +24,7 @@ from polaris_nl.planning.compile import Draft
 from polaris_nl.runs import RunOrder, run_simulated
 from polaris_nl.session import Session
 from polaris_tui.app import PolarisApp
+from polaris_tui.base import MakeTalking
 from polaris_tui.pane import Pane
 from polaris_tui.prompt import Prompt
 from polaris_tui.settings import Settings
@@ -146,7 +148,7 @@ def _no_color(monkeypatch: pytest.MonkeyPatch) -> None:
 def _no_threads() -> Iterator[None]:
     """Neither a conversation nor a run outlives its screen."""
     yield
-    left = [t.name for t in threading.enumerate() if t.name in ("conversation", "run")]
+    left = [t.name for t in threading.enumerate() if t.name in ("conversation", "run", "talking")]
     assert not left
 
 
@@ -165,6 +167,8 @@ def play(care_home: World, understanding: Understanding, tmp_path: Path) -> Iter
         live: bool = False,
         planner: object = None,
         settings: Settings = Settings(),
+        profile: Profile | None = None,
+        talk: MakeTalking | None = None,
     ) -> Session:
         session = Session(world or care_home, program, path)
         opened.append(session)
@@ -172,7 +176,9 @@ def play(care_home: World, understanding: Understanding, tmp_path: Path) -> Iter
             session.__dict__["understanding"] = understanding
         if planner is not None:
             session.__dict__["planner"] = planner
-        app = PolarisApp(session, settings, live=live, logs=tmp_path / "logs")
+        app = PolarisApp(
+            session, settings, live=live, logs=tmp_path / "logs", profile=profile, talk=talk
+        )
 
         async def act() -> None:
             async with app.run_test(size=size) as pilot:

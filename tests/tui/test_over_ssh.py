@@ -170,7 +170,106 @@ def test_the_tidying_program_by_sentences_alone(terminal: Tmux, sshd: Sshd, tmp_
     terminal.choose("1", "Log ")
     terminal.type(":chain")
     terminal.see("What led to event")
-    terminal.type("quit")
+    terminal.type(":quit")
+    terminal.see("code 0")
+
+
+def test_the_tidying_program_by_keys_alone(terminal: Tmux, sshd: Sshd, tmp_path: Path) -> None:
+    file = tmp_path / "dishes.polaris.json"
+    opened(terminal, sshd, file, "dinner-party")
+    terminal.keys("Tab")
+    terminal.see("> Program and plan")
+    add(terminal, "bring some object to", "cup", "countertop")
+    terminal.choose("another goal", "And what else?")
+    terminal.choose("bring some object to", "which object")
+    terminal.choose("plate", "which surface")
+    terminal.choose("countertop", "add it")
+    terminal.keys("Enter")
+    terminal.see("the plate to the countertop", "ok, ")
+    add(terminal, "open some container", "cupboard")
+    terminal.choose("only once", "Once what has happened?")
+    for dish in ("cup", "plate"):
+        terminal.choose("some object is on", "which object")
+        terminal.choose(dish, "which surface")
+        terminal.choose("drying rack", "on the drying rack:")
+        if dish == "cup":
+            terminal.choose("only if something else", "Once what has happened?")
+    terminal.keys("Enter")
+    terminal.see("opened: open the cupboard", "ok, ")
+    for dish in ("cup", "plate"):
+        add(terminal, "put some object in", dish, "cupboard")
+        terminal.keys("Enter")
+        terminal.see(f"put the {dish} in the cupboard", "ok, ")
+    assert ["(at cup drying-rack)", "(at plate drying-rack)"] in [
+        sorted(x) for x in conditions(file)
+    ]
+    terminal.keys("p")
+    terminal.see("> Plan, step by step")
+    terminal.keys("End")
+    terminal.see("Reached: ", "in the cupboard")
+    terminal.keys("F5")
+    terminal.see("Shall I start?")
+    terminal.keys("Enter")
+    terminal.see("> running", "Expected")
+    terminal.keys("F9")
+    terminal.see("The run is over: stopped.")
+    terminal.keys("F10")
+    terminal.see("Actions")
+    terminal.choose("log:", "Which log?")
+    terminal.choose("1", "> Log ")
+    terminal.keys("End")
+    terminal.see("You stopped the run.")
+    terminal.keys("c")
+    terminal.see("What led to event")
+    terminal.keys("C-q")
+    terminal.see("code 0")
+
+
+def test_the_caregiving_program_by_sentences_alone(
+    terminal: Tmux, sshd: Sshd, tmp_path: Path
+) -> None:
+    file = tmp_path / "lunch.polaris.json"
+    opened(terminal, sshd, file, "care-home")
+    for sentence, seen in (
+        ("Tell the resident that lunch is ready.", "ok, 3 actions"),
+        (
+            "Once she acknowledges, bring a full tray to her table and then go home.",
+            "ok, 12 actions",
+        ),
+        ("If she dismisses it, just go home.", "ok, 14 actions"),
+    ):
+        terminal.type(sentence)
+        terminal.see(seen, "The plan takes")
+    assert ["(acknowledged lunchtime)"] in conditions(file)
+    assert ["(dismissed lunchtime)"] in conditions(file)
+    terminal.type("show the steps")
+    terminal.see("Plan, step by step")
+    terminal.type(":first-step")
+    terminal.see("Step 1 of")
+    for _ in range(4):
+        terminal.type(":next")
+    terminal.see("Step 5 of 16, way 1 of 2: once lunch is acknowledged")
+    terminal.type(":next-way")
+    terminal.see("way 2 of 2: once lunch is dismissed")
+    terminal.type("show the map")
+    terminal.see("Map, after step 5")
+    terminal.type("run it")
+    terminal.see("Shall I start? Say yes or no.")
+    terminal.type("yes")
+    terminal.see("Map, now", "I wait until", seconds=4 * LIMIT_S)
+    terminal.type("she dismisses it")
+    # A simulated resident may have been quicker, and have acknowledged it.
+    terminal.see(": on to ")
+    terminal.type("stop")
+    terminal.see("You stopped the run.")
+    terminal.type(":log")
+    terminal.see("Which log?")
+    terminal.choose("1", "Log ")
+    terminal.type(":filter")
+    terminal.see("Only events with these words")
+    terminal.type("topic=transition")
+    terminal.see("only: topic=transition", ": on to ")
+    terminal.type(":quit")
     terminal.see("code 0")
 
 
@@ -219,7 +318,7 @@ def test_a_dropped_line_neither_stops_nor_orphans_a_run(
     again = Tmux(tmp_path, "again")
     try:
         again.start(sshd.command("tui", str(file), "--world", "care-home"))
-        again.see("This run was begun in another terminal.", "Run", "tell the resident")
+        again.see("─ Run, begun in another terminal ─", "tell the resident")
         again.see("I wait.", "lunch is dismissed", seconds=2 * LIMIT_S)
         again.keys("F9")
         again.see("The run is over: stopped.", "polaris-nl review")

@@ -8,7 +8,9 @@ import pytest
 
 from polaris_nl.model.errors import FormatError
 from polaris_tui import settings as module
-from polaris_tui.actions import ACTIONS, FOOTERS, Keymap, Situation, clashes, footer
+from polaris_tui.actions import ACTIONS, Keymap, clashes
+from polaris_tui.footer import FOOTERS, footer
+from polaris_tui.reasons import Situation
 from polaris_tui.settings import Settings, read_settings
 from tests.tui.conftest import Play, Stage
 
@@ -28,12 +30,20 @@ def test_no_two_actions_share_a_key() -> None:
 def test_keys_get_through_terminals() -> None:
     """Letters, digits, signs, F1 to F10, arrows and ctrl with letters: the rest is eaten somewhere."""
     plain = {"up", "down", "left", "right", "home", "end", "pageup", "pagedown", "tab", "shift+tab"}
-    plain |= {"enter", "escape", "delete", "slash", "colon", "question_mark", "ctrl+at"}
+    plain |= {"enter", "escape", "delete", "slash", "colon", "question_mark", "ctrl+@"}
     for action in ACTIONS:
         for key in (*action.keys, *action.letters):
             function = key[:1] == "f" and key[1:].isdigit() and int(key[1:]) <= 10
             control = key.startswith("ctrl+") and len(key) == 6
             assert key in plain or function or control or len(key) == 1, key
+
+
+def test_the_space_bar_with_ctrl_is_a_key_of_its_own(tmp_path: Path) -> None:
+    keymap = read(tmp_path, '[keys]\ntalk = "ctrl+space T"\n').keymap
+    assert keymap.shown("talk") == "ctrl+space, T"
+    found = keymap.anywhere("ctrl+@")
+    assert found is not None
+    assert found.id == "talk"
 
 
 def test_every_action_is_in_the_help_or_has_a_name() -> None:

@@ -146,6 +146,18 @@ def test_screens(
             if number in shown:
                 app.draw()
                 await keep(shown[number])
+        state.progress = Progress(stage.session.world.initial, activity="connecting")
+        state.robot = state.ran_on = "the simulated Stretch"
+        app.draw()
+        await keep("a robot that is looked for")
+        state.attached = True
+        state.voice = "heard: go home"
+        for event in events[:3]:
+            state.progress = advanced(state.progress, event, plan)
+        app.draw()
+        await keep("a robot run that was begun elsewhere")
+        state.robot = state.voice = ""
+        state.attached = False
         state.progress = Progress(stage.session.world.initial)
         app.open_log(log)
         await stage.see("Log lunch.mcap")

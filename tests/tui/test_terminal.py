@@ -93,6 +93,10 @@ def test_keys_typed_ahead_keep_their_order(tmux: Tmux) -> None:
     tmux("send-keys", "-l", "nonsense")
     tmux("send-keys", "C-u", "go to the hall", "Enter", "open the fridge", "Enter", "F7", "x")
     screen = tmux.see("Undone: Open the fridge", "> x", "ok, 1 action")
+    # A colon in the program opens the list of actions; what follows at once is a word, not keys.
+    tmux("send-keys", "C-u", "Tab", ":history", "Enter")
+    tmux.see("Where to go back, or forward, to")
+    tmux("send-keys", "Escape")
     assert "> go to the hall" in screen
     assert "> open the fridge" in screen
     tmux("send-keys", "C-q")

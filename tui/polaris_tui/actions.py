@@ -1,146 +1,19 @@
 """Every action of the application, once for all: what it does, its keys, and why it can't be done now.
 
 Key bindings, the status line, the help, the list of actions (F10) and the line mode's commands are all
-made from this list. Reasons are sentences: a key that does nothing says why.
+made from this list.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Literal as OneOf
 
-from polaris_nl.automaton.automaton import START
+from polaris_tui import reasons as why
+from polaris_tui.reasons import Reason, View
 
-View = OneOf["program", "map", "plan", "run", "review", "answers", "help"]
 Group = OneOf["Program", "Plan", "Run", "Review", "Screen"]
-
-
-@dataclass(frozen=True, slots=True)
-class Situation:
-    """What decides whether an action can be done.
-
-    Attributes:
-        view: what the largest pane shows.
-        checkpoint: the id of the checkpoint that is picked; the start where none is.
-        empty: the program has no checkpoint but the start.
-        running: a run goes on.
-        waiting: how many conditionals the robot waits for.
-        undoable, redoable: there is something to undo, to redo.
-        repairs: ways out and changes that the plan offers.
-        planned: there is a plan with at least one action or checkpoint.
-        loose: checkpoints that nothing leads to.
-        elsewhere: a run of this world goes on in another terminal, or without one.
-        leftover: an earlier session has left a program unsaved.
-        listens: something is there that push-to-talk can start.
-        editor: the user's editor is known.
-    """
-
-    view: View = "program"
-    checkpoint: str = START
-    empty: bool = True
-    running: bool = False
-    waiting: int = 0
-    undoable: bool = False
-    redoable: bool = False
-    repairs: int = 0
-    planned: bool = False
-    loose: bool = False
-    elsewhere: bool = False
-    leftover: bool = False
-    listens: bool = False
-    editor: bool = False
-
-
-Reason = Callable[[Situation], str]
-"""Why an action can't be done now, in a sentence; "" where it can."""
-
-
-def _always(now: Situation) -> str:
-    return ""
-
-
-def _no_review(now: Situation) -> str:
-    return "A log can't be changed; F2 goes back to the program." if now.view == "review" else ""
-
-
-def _filled(now: Situation) -> str:
-    return "The program has no checkpoint but the start." if now.empty else ""
-
-
-def _picked(now: Situation) -> str:
-    if now.view == "review":
-        return _no_review(now)
-    if now.empty:
-        return 'There is no checkpoint yet; "a" adds one, or say what the robot should achieve.'
-    if now.checkpoint == START:
-        return "The start always stays as it is; pick another checkpoint first."
-    return ""
-
-
-def _loose(now: Situation) -> str:
-    return _picked(now) or ("" if now.loose else "No checkpoint is unconnected; m moves this one.")
-
-
-def _undoable(now: Situation) -> str:
-    return "" if now.undoable else "There is nothing to undo."
-
-
-def _redoable(now: Situation) -> str:
-    return "" if now.redoable else "There is nothing to redo."
-
-
-def _repairs(now: Situation) -> str:
-    return "" if now.repairs else "The plan has no problem that has a way out."
-
-
-def _planned(now: Situation) -> str:
-    return "" if now.planned else "There is no plan to step through yet."
-
-
-def _runnable(now: Situation) -> str:
-    if now.running:
-        return "A run is going on. Stop it with F9 before you start another."
-    return "" if now.view != "review" else "This is a log; F2 goes back to the program."
-
-
-NO_RUN = 'There is no run. F5, or "run it", starts one.'
-
-
-def _running(now: Situation) -> str:
-    return "" if now.running else NO_RUN
-
-
-def _waiting(now: Situation) -> str:
-    return _running(now) or ("" if now.waiting else "The robot waits for nothing just now.")
-
-
-def _reviewing(now: Situation) -> str:
-    return "" if now.view == "review" else 'This is for logs; "l" opens one.'
-
-
-def _stepping(now: Situation) -> str:
-    return "" if now.view == "plan" else "This is for the plan step by step; F4 opens it."
-
-
-def _elsewhere(now: Situation) -> str:
-    return _runnable(now) or ("" if now.elsewhere else "No run goes on in another terminal.")
-
-
-def _listens(now: Situation) -> str:
-    if now.listens:
-        return ""
-    return "Nothing listens here; without a screen, polaris-nl listen takes speech."
-
-
-def _leftover(now: Situation) -> str:
-    return "" if now.leftover else "No earlier session has left anything unsaved."
-
-
-def _editor(now: Situation) -> str:
-    if now.editor:
-        return _no_review(now)
-    return "There is no editor: set the environment variable EDITOR, such as EDITOR=nano."
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,7 +40,7 @@ class Action:
     views: tuple[View, ...] = ()
     group: Group = "Screen"
     first: bool = False
-    reason: Reason = _always
+    reason: Reason = why.always
 
 
 def _action(
@@ -176,7 +49,7 @@ def _action(
     does: str,
     keys: str = "",
     letters: str = "",
-    reason: Reason = _always,
+    reason: Reason = why.always,
     short: str = "",
     views: tuple[View, ...] = (),
     first: bool = False,
@@ -190,45 +63,45 @@ _EDITED: tuple[View, ...] = ("program", "map", "answers", "run")
 _LISTS: tuple[View, ...] = ("program", "map", "answers", "help", "review", "run")
 
 ACTIONS: tuple[Action, ...] = (
-    _action("Program", "add", "add a checkpoint after this one", "", "a", _no_review, "add", _EDITED),
-    _action("Program", "insert", "insert a checkpoint before this one", "", "b", _picked, "", _EDITED),
-    _action("Program", "goals", "change the goals", "", "e", _picked, "goals", _EDITED),
-    _action("Program", "condition", "change when this is reached", "", "c", _picked, "condition", _EDITED),
-    _action("Program", "rename", "rename it", "", "r", _picked, "rename", _EDITED),
-    _action("Program", "delete", "delete it", "", "d delete", _picked, "delete", _EDITED),
-    _action("Program", "move", "move it, with all that comes after it", "", "m", _picked, "move", _EDITED),
-    _action("Program", "connect", "lead from here to an unconnected checkpoint", "", "x", _loose, "", _EDITED),
-    _action("Program", "disconnect", "unconnect it from the one before", "", "X", _picked, "", _EDITED),
-    _action("Program", "mend", "ways out of the problems", "ctrl+r", "f", _repairs, "mend"),
-    _action("Program", "pick", "go to a checkpoint by its name", "", "slash", _filled, "", _EDITED),
-    _action("Program", "why", "why it is there, what it takes", "", "w", _always, "why", (*_EDITED, "plan")),
-    _action("Program", "undo", "undo", "f7 ctrl+z", "u", _undoable),
-    _action("Program", "redo", "redo", "f8 ctrl+y", "U", _redoable),
-    _action("Program", "recover", "a program that an earlier session left unsaved", "", "", _leftover),
-    _action("Program", "history", "all that was changed, and go back to any of it", "", "h", _always),
-    _action("Program", "shape", "outline, or drawn as a tree", "", "g", _always, "tree", ("program",)),
-    _action("Program", "editor", "the program file in your editor", "", "E", _editor),
-    _action("Program", "save-as", "keep the program in a file of another name", "", "s", _no_review),
-    _action("Plan", "plan", "the plan step by step, and back", "f4", "p", _planned, "steps"),
-    _action("Plan", "next", "the step after it", "", "right", _stepping, "", ("plan",)),
-    _action("Plan", "previous", "the step before it", "", "left", _stepping, "", ("plan",)),
-    _action("Plan", "next-way", "the next way, where ways part", "", "down", _stepping, "", ("plan",)),
-    _action("Plan", "other-way", "the way before, where ways part", "", "up", _stepping, "", ("plan",)),
-    _action("Plan", "first-step", "the first step", "", "home", _stepping, "", ("plan",)),
-    _action("Plan", "last-step", "the last step", "", "end", _stepping, "", ("plan",)),
-    _action("Run", "run", 'run it in the simulated world; it starts after your "yes"', "f5", "", _runnable),
-    _action("Run", "watch", "the run: what is done, expected, perceived, waited for", "", "v", _always),
-    _action("Run", "pause", "pause the run, and resume it", "f6", "", _running),
-    _action("Run", "stop", "stop the run, at any time", "f9 ctrl+c", "", _always, "", (), True),
-    _action("Run", "tell", "tell the robot what has happened", "ctrl+t", "t", _waiting, "tell"),
-    _action("Run", "attach", "see a run that goes on without its terminal", "", "", _elsewhere),
-    _action("Run", "talk", "push to talk", "ctrl+at", "", _listens),
-    _action("Review", "log", "open the log of a run", "", "l", _always),
-    _action("Review", "next-problem", "the next problem", "", "n", _reviewing, "next problem", ("review",)),
-    _action("Review", "last-problem", "the problem before", "", "N", _reviewing, "", ("review",)),
-    _action("Review", "filter", "show only some events", "", "slash", _reviewing, "filter", ("review",)),
-    _action("Review", "compare", "expected beside perceived", "", "d", _reviewing, "compare", ("review",)),
-    _action("Review", "chain", "what led to this event", "", "c", _reviewing, "chain", ("review",)),
+    _action("Program", "add", "add a checkpoint after this one", "", "a", why.no_review, "add", _EDITED),
+    _action("Program", "insert", "insert a checkpoint before this one", "", "b", why.picked, "", _EDITED),
+    _action("Program", "goals", "change the goals", "", "e", why.picked, "goals", _EDITED),
+    _action("Program", "condition", "change when this is reached", "", "c", why.picked, "condition", _EDITED),
+    _action("Program", "rename", "rename it", "", "r", why.picked, "rename", _EDITED),
+    _action("Program", "delete", "delete it", "", "d delete", why.picked, "delete", _EDITED),
+    _action("Program", "move", "move it, with all that comes after it", "", "m", why.picked, "move", _EDITED),
+    _action("Program", "connect", "lead from here to one that is unconnected", "", "x", why.loose, "", _EDITED),
+    _action("Program", "disconnect", "unconnect it from the one before", "", "X", why.picked, "", _EDITED),
+    _action("Program", "mend", "ways out of the problems", "ctrl+r", "f", why.repairs, "mend"),
+    _action("Program", "pick", "go to a checkpoint by its name", "", "slash", why.filled, "", _EDITED),
+    _action("Program", "why", "why it is there, what it takes", "", "w", why.always, "why", (*_EDITED, "plan")),
+    _action("Program", "undo", "undo", "f7 ctrl+z", "u", why.undoable),
+    _action("Program", "redo", "redo", "f8 ctrl+y", "U", why.redoable),
+    _action("Program", "recover", "a program that an earlier session left unsaved", "", "", why.leftover),
+    _action("Program", "history", "all that was changed, and go back to any of it", "", "h", why.always),
+    _action("Program", "shape", "outline, or drawn as a tree", "", "g", why.always, "tree", ("program",)),
+    _action("Program", "editor", "the program file in your editor", "", "E", why.editor),
+    _action("Program", "save-as", "keep the program in a file of another name", "", "s", why.no_review),
+    _action("Plan", "plan", "the plan step by step, and back", "f4", "p", why.planned, "steps"),
+    _action("Plan", "next", "the step after it", "", "right", why.stepping, "", ("plan",)),
+    _action("Plan", "previous", "the step before it", "", "left", why.stepping, "", ("plan",)),
+    _action("Plan", "next-way", "the next way, where ways part", "", "down", why.stepping, "", ("plan",)),
+    _action("Plan", "other-way", "the way before, where ways part", "", "up", why.stepping, "", ("plan",)),
+    _action("Plan", "first-step", "the first step", "", "home", why.stepping, "", ("plan",)),
+    _action("Plan", "last-step", "the last step", "", "end", why.stepping, "", ("plan",)),
+    _action("Run", "run", 'run it; it starts after your "yes"', "f5", "", why.runnable),
+    _action("Run", "watch", "the run: what is done, expected, perceived, waited for", "", "v", why.always),
+    _action("Run", "pause", "pause the run, and resume it", "f6", "", why.running),
+    _action("Run", "stop", "stop the run, at any time", "f9 ctrl+c", "", why.always, "", (), True),
+    _action("Run", "tell", "tell the robot what has happened", "ctrl+t", "t", why.waiting, "tell"),
+    _action("Run", "attach", "see a run that goes on without its terminal", "", "", why.elsewhere),
+    _action("Run", "talk", "push to talk: what is said is taken as if typed", "ctrl+@ ctrl+g", "", why.listens),
+    _action("Review", "log", "open the log of a run", "", "l", why.always),
+    _action("Review", "next-problem", "the next problem", "", "n", why.reviewing, "next problem", ("review",)),
+    _action("Review", "last-problem", "the problem before", "", "N", why.reviewing, "", ("review",)),
+    _action("Review", "filter", "show only some events", "", "slash", why.reviewing, "filter", ("review",)),
+    _action("Review", "compare", "expected beside perceived", "", "d", why.reviewing, "compare", ("review",)),
+    _action("Review", "chain", "what led to this event", "", "c", why.reviewing, "chain", ("review",)),
     _action("Screen", "help", "this help, and back", "f1", "question_mark"),
     _action("Screen", "program", "the program, with its actions or without", "f2"),
     _action("Screen", "map", "the map, and back", "f3"),
@@ -237,19 +110,19 @@ ACTIONS: tuple[Action, ...] = (
     _action("Screen", "copy", "copy what is picked, or an answer, to your clipboard", "", "y"),
     _action("Screen", "theme", "other colours", ""),
     _action("Screen", "open", "in the program: open the step, the repair, the question", "", "enter"),
-    _action("Screen", "up", "the row above", "", "up", _always, "", _LISTS),
-    _action("Screen", "down", "the row below", "", "down", _always, "", _LISTS),
-    _action("Screen", "left", "in a tree: the checkpoint before", "", "left", _always, "", _LISTS),
-    _action("Screen", "right", "in a tree: the checkpoint after", "", "right", _always, "", _LISTS),
+    _action("Screen", "up", "the row above", "", "up", why.always, "", _LISTS),
+    _action("Screen", "down", "the row below", "", "down", why.always, "", _LISTS),
+    _action("Screen", "left", "in a tree: the checkpoint before", "", "left", why.always, "", _LISTS),
+    _action("Screen", "right", "in a tree: the checkpoint after", "", "right", why.always, "", _LISTS),
     _action("Screen", "page-up", "scroll up", "pageup"),
     _action("Screen", "page-down", "scroll down", "pagedown"),
-    _action("Screen", "top", "the first row", "", "home", _always, "", _LISTS),
-    _action("Screen", "bottom", "the last row", "", "end", _always, "", _LISTS),
+    _action("Screen", "top", "the first row", "", "home", why.always, "", _LISTS),
+    _action("Screen", "bottom", "the last row", "", "end", why.always, "", _LISTS),
     _action("Screen", "next-pane", "from the input line to the program, the problems, the answers, and back"
             "; at the beginning of a name: completes it", "tab"),
     _action("Screen", "previous-pane", "the same, backwards", "shift+tab"),
     _action("Screen", "prompt", "back to the input line, then to the program", "escape", "i"),
-    _action("Screen", "quit", "quit; stops a run first", "ctrl+q", "", _always, "", (), True),
+    _action("Screen", "quit", "quit; stops a run first", "ctrl+q", "", why.always, "", (), True),
 )  # fmt: skip
 """In the order of help and list."""
 
@@ -264,7 +137,7 @@ _SHOWN = {
     "enter": "Enter",
     "pageup": "PgUp",
     "pagedown": "PgDn",
-    "ctrl+at": "ctrl+space",
+    "ctrl+@": "ctrl+space",
 }
 
 
@@ -323,7 +196,7 @@ def _changed(action: Action, keys: tuple[str, ...] | None) -> Action:
     """An action with the user's keys: letters stay letters, others work everywhere."""
     if keys is None:
         return action
-    letters = tuple(k for k in keys if len(k) == 1 or k in _SHOWN)
+    letters = tuple(k for k in keys if len(k) == 1 or (k in _SHOWN and not k.startswith("ctrl+")))
     return replace(action, keys=tuple(k for k in keys if k not in letters), letters=letters)
 
 
@@ -335,52 +208,3 @@ def clashes(keymap: Keymap) -> Iterator[tuple[str, Action, Action]]:
                 apart = one.views and other.views and not {*one.views} & {*other.views}
                 if not apart:
                     yield key, one, other
-
-
-FOOTERS: Mapping[str, tuple[str, ...]] = {
-    "prompt": ("help", "program", "map", "plan", "run", "actions", "quit"),
-    "program": ("add", "goals", "condition", "rename", "delete", "mend", "why", "shape", "prompt"),
-    "plan": ("next", "next-way", "map", "why", "prompt"),
-    "run": ("stop", "pause", "tell", "map", "help"),
-    "review": ("next-problem", "filter", "compare", "chain", "map", "prompt"),
-}
-"""The actions that the status line shows, by what has the focus; those that don't fit are left out."""
-
-_WORDS = {
-    "help": "help",
-    "program": "program",
-    "map": "map",
-    "plan": "steps",
-    "run": "run",
-    "actions": "actions",
-    "quit": "quit",
-    "next": "step",
-    "next-way": "way",
-    "stop": "stop",
-    "pause": "pause",
-    "prompt": "back",
-}
-
-
-_IN_A_MENU = "Up, Down, Enter choose  letters filter  {back} back"
-
-
-def footer(place: str, keymap: Keymap, now: Situation, room: int) -> str:
-    """Keys with their meanings, as many as fit; those that can't be used now are left out."""
-    if place == "ask":
-        text = f"Enter takes it  {keymap.first('prompt')} back"
-        return text if len(text) <= room else ""
-    if place == "menu":
-        text = _IN_A_MENU.format(back=keymap.first("prompt"))
-        return text if len(text) <= room else f"{keymap.first('prompt')} back"
-    shown = ""
-    for id in FOOTERS[place]:
-        action = keymap.of(id)
-        key = keymap.first(id)
-        if not key or action.reason(now):
-            continue
-        more = f"{shown}  {key} {action.short or _WORDS.get(id, id)}"
-        if len(more) - 2 > room:
-            break
-        shown = more
-    return shown.strip()

@@ -7,25 +7,20 @@ back is a message here. Each message makes a new scene, and the panes are drawn 
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable
+from collections.abc import Mapping
 from dataclasses import replace
 
 from textual.events import Resize
 
 from polaris_nl.answers import change_in_words
-from polaris_nl.execution.state import HumanCommand
+from polaris_nl.model.text import capital
 from polaris_nl.render.remembered import remembered
 from polaris_nl.snapshot import Answer
 from polaris_tui import messages as told
-from polaris_tui.actions import NO_RUN
-from polaris_tui.board import Board
-from polaris_tui.completion import names_of
-from polaris_tui.deeds import Deeds
-from polaris_tui.face import Face
-from polaris_tui.pane import Pane
-from polaris_tui.phrases import Order, action_asked, order_in, view_asked
+from polaris_tui.keyed import Keyed
+from polaris_tui.messages import VoiceState
 from polaris_tui.progress import advanced
-from polaris_tui.running import Running
+from polaris_tui.reasons import NO_RUN
 from polaris_tui.scene import Reading
 from polaris_tui.transcript import Entry, answer_entries, event_entry
 
@@ -34,7 +29,19 @@ PATIENCE_S = 0.15
 SLOW_S = 0.5
 """How often the parts of a plan that takes long are shown."""
 END_S = 5.0
-"""How long leaving waits for a run to stop, and for what the session is doing."""
+"""How long leaving waits for what the session is doing."""
+
+VOICE: Mapping[VoiceState, str] = {
+    "": "",
+    "opening": "opening the microphone",
+    "listening": "listening",
+    "waiting": '{key} to talk; "stop" works',
+    "asleep": "asleep",
+    "speaking": "speaking",
+    "deaf": "no microphone",
+    "off": "",
+}
+"""What the status line says about the voice."""
 
 NO_FILE = "Nothing is saved without a program file; to keep this, start with: polaris-nl tui FILE"
 KEPT = "This program has no name yet, and is kept all the same; :save-as gives it one."
@@ -44,13 +51,8 @@ STOPPED_FIRST = "You said stop before it began, so nothing runs."
 ONE_RUN = "A run is going on. Stop it with F9 before you start another."
 
 
-class PolarisApp(Face):
+class PolarisApp(Keyed):
     """The application, with what it hears from threads and widgets; see `BaseApp` for its arguments."""
-
-    def make_board(self) -> Board:
-        """The panes, which tell this application of keys."""
-        self.deeds = Deeds(self, self.state)
-        return Board(self, self.state.glyphs, self.state.look)
 
     def on_mount(self) -> None:
         """Shows the first screen; language and planner are loaded behind it."""
@@ -70,17 +72,19 @@ class PolarisApp(Face):
     def on_unmount(self) -> None:
         """Leaves no thread behind that still uses the session."""
         self._unsubscribe()
+        if self.talking is not None:
+            self.talking.end()
         current = self.state.current
         gone = sys.__stdin__ is None or not sys.__stdin__.isatty()
         if current is not None and not self.is_headless and gone:
             self.state.hung_up = True
-        if isinstance(current, Running) and not self.state.hung_up:
-            current.command(HumanCommand("stop"))
-            current.wait(END_S)
-        elif current is not None and not isinstance(current, Running):
-            current.leave()
-            current.wait(END_S)
+        if current is not None and not (current.ours and self.state.hung_up):
+            current.end()
         self._conversation.end(END_S)
+
+    async def action_quit(self) -> None:
+        """Textual's own key for quitting, too, stops a run first."""
+        self.action_do("quit")
 
     def on_hung_up(self) -> None:
         """The terminal is gone: leaves it alone, and lets a run go on (see `remote`)."""
@@ -96,6 +100,8 @@ class PolarisApp(Face):
             self.state.wording = remembered(self.session.wording)
         if self._elsewhere:
             self.attach()
+        if self.talking is not None and self.talking.at_once:
+            self.talking.begin()
         self.draw()
 
     def on_changed(self) -> None:
@@ -127,6 +133,8 @@ class PolarisApp(Face):
             entries = [Entry(NO_RUN)]
         elif answer.confirmed and not starts:
             entries = [Entry(ONE_RUN if state.current else STOPPED_FIRST, "! ")]
+        elif command == "run" and self.session.awaits_yes and state.robot:
+            entries.insert(0, Entry(f"{capital(state.robot)} will move.", "! "))
         elif state.current and answer.snapshot.automaton != state.current.snapshot.automaton:
             entries.append(Entry(RUN_GOES_ON))
         state.transcript = state.transcript.answer(message.ticket, entries)
@@ -207,7 +215,7 @@ class PolarisApp(Face):
         self.state.read_wording = remembered(message.wording)
         self.state.view = "review"
         self.draw()
-        self.board.main.focus()
+        self.screen.set_focus(self.board.main)
         self.board.main.reset()
 
     def on_happened(self, message: told.Happened) -> None:
@@ -222,6 +230,37 @@ class PolarisApp(Face):
             state.note(entry)
         self.draw()
 
+    def on_listened(self, message: told.Listened) -> None:
+        """Shows whether it listens; why not, where it can't."""
+        if message.text:
+            lead = "! " if message.state == "deaf" else "  "
+            self.state.note(Entry(message.text, lead))
+        if message.state:
+            key = self.keymap.first("talk")
+            self.state.voice = VOICE[message.state].format(key=key)
+        self.draw()
+
+    def on_ordered(self, message: told.Ordered) -> None:
+        """Shows that "stop" or "pause" was heard, and sees to it also where a run has begun just now."""
+        self.state.voice = f"heard: {message.order}"
+        if self.state.current is not None:
+            self.state.note(said=self.state.voice)
+        self.order(message.order)
+        self.draw()
+
+    def on_spoken(self, message: told.Spoken) -> None:
+        """Shows what was heard, and what came of it, as if it was typed."""
+        reply, state = message.reply, self.state
+        state.voice = f"heard: {reply.said.text}"
+        if reply.answer is not None:
+            if reply.answer.interpretation.command in ("yes", "no"):
+                self.deeds.close()
+            ticket = state.note(said=state.voice)
+            self.on_answered(told.Answered(ticket, reply.answer))
+        elif reply.text:
+            state.note(Entry(reply.text), said=state.voice)
+        self.draw()
+
     def on_run_over(self, message: told.RunOver) -> None:
         """Goes back to editing."""
         self.state.current = None
@@ -231,96 +270,6 @@ class PolarisApp(Face):
         if self.state.leaving:
             self.exit(0)
         self.draw()
-
-    def order(self, order: Order) -> None:
-        """Commands the run."""
-        self.deeds.order(order)
-
-    def action_do(self, id: str) -> None:
-        """Does an action that a key means everywhere."""
-        self.deeds.perform(id)
-
-    def pane_key(self, pane: Pane, key: str, character: str | None) -> bool:
-        """Does what a letter means in a pane."""
-        action = self.keymap.letter(key, self.state.view)
-        if action is not None:
-            self.deeds.perform(action.id)
-            return True
-        if self.key_anywhere(key):
-            return True
-        if character is not None and character.isprintable():
-            help_key, back = self.keymap.first("help"), self.keymap.first("prompt")
-            self.tell_briefly(
-                f'"{character}" means nothing here. {help_key} lists the keys; {back} goes to the input line.'
-            )
-            return True
-        return False
-
-    def key_anywhere(self, key: str) -> bool:
-        """Does what a key means everywhere."""
-        action = self.keymap.anywhere(key)
-        if action is not None:
-            self.deeds.perform(action.id)
-        return action is not None
-
-    def pane_moved(self, pane: Pane) -> None:
-        """Keeps what is picked with the cursor."""
-        row, state = pane.row, self.state
-        if pane is self.board.main and row is not None:
-            if state.view == "program" and not self.as_tree and row.checkpoint:
-                state.picked = row.checkpoint
-            elif state.view == "review" and state.reading is not None and row.action:
-                state.reading = replace(state.reading, number=row.action)
-        self.call_later(self.draw)
-
-    def pane_entered(self, pane: Pane) -> None:
-        """Goes on where the program was changed last."""
-        row, state = pane.row, self.state
-        program = pane is self.board.main and state.view == "program" and not self.as_tree
-        if program and (row is None or row.checkpoint != state.picked):
-            pane.pick(state.picked)
-        self.call_later(self.draw)
-
-    def pane_left(self, pane: Pane) -> None:
-        """Shows other keys."""
-        self.call_later(self.draw)
-
-    def take_line(self, line: str) -> None:
-        """Takes a line of the input line."""
-        state = self.state
-        if state.choosing.last is not None:
-            self.deeds.chosen(line)
-            self.draw()
-            return
-        view, order, action = view_asked(line), order_in(line), action_asked(line)
-        if order and (state.current or order == "stop"):
-            if state.current:
-                state.note(said=line)
-            self.deeds.order(order)
-        elif action is not None:
-            known = any(a.id == action for a in self.keymap.actions)
-            self.deeds.perform(action if known else "actions")
-        elif view is not None:
-            state.view = view
-        elif line.isdecimal() and state.current and 0 < int(line) <= len(state.progress.waiting):
-            self.deeds.perform("tell", line)
-        else:
-            self.say(line)
-        self.draw()
-
-    def filter_menu(self, text: str) -> None:
-        """Filters the menu that is open."""
-        self.state.choosing = self.state.choosing.filtered(text)
-        self.draw()
-
-    def move_menu(self, by: int) -> None:
-        """Picks another option."""
-        self.state.choosing = self.state.choosing.moved(by)
-        self.draw()
-
-    def names(self) -> Iterable[str]:
-        """What can be completed."""
-        return names_of(self.session.world, self.session.snapshot.automaton)
 
     def on_resize(self, event: Resize) -> None:
         """Shares the rows of the screen out anew."""

@@ -1,17 +1,12 @@
-"""Editing by keys: menus of typed predicates and fitting entities that end in edits.
-
-The paper's parameterisation menu (Porfirio, Roberts and Hiatt, HRI 2024, section 3.3): a predicate is
-picked first, then for each of its parameters an entity of a type that fits. Pure functions.
-"""
+"""Editing by keys: what each action asks, down to the edits that come of it. Pure functions."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
-from pathlib import Path
 
-from polaris_nl.automaton.automaton import START, Automaton, Checkpoint, Transition
+from polaris_nl.automaton.automaton import START, Checkpoint, Transition
 from polaris_nl.automaton.edits import (
     AddCheckpoint,
     Connect,
@@ -24,43 +19,10 @@ from polaris_nl.automaton.edits import (
     SetConditional,
     SetGoals,
 )
-from polaris_nl.model.domain import Predicate
-from polaris_nl.model.formula import Goal, Literal, Variable
+from polaris_nl.model.formula import Goal, Literal
 from polaris_nl.model.text import listed, sentence
-from polaris_nl.model.wording import Wording
-from polaris_nl.model.world import World
-from polaris_tui.menus import Ask, Change, Menu, Note, Option, Perform, Step
-
-MOST_LOGS = 30
-"""Logs that are offered to be opened; others can be named."""
-
-NameOf = Callable[[Sequence[Goal], Sequence[Literal], Automaton], str]
-"""The automatic name of a checkpoint: from its goals and the condition before it."""
-
-Renamed = Callable[[Automaton, str, Sequence[Goal], Sequence[Literal]], Iterable[RenameCheckpoint]]
-
-
-@dataclass(frozen=True)
-class Desk:
-    """What is edited, and with which words.
-
-    Attributes:
-        checkpoint: the id of the checkpoint that is picked.
-        name: makes names for new checkpoints.
-        renamed: gives a checkpoint a new name with its new goals, unless the user has named it.
-    """
-
-    world: World
-    wording: Wording
-    automaton: Automaton
-    checkpoint: str
-    name: NameOf
-    renamed: Renamed
-
-    @property
-    def here(self) -> Checkpoint:
-        """The checkpoint that is picked."""
-        return self.automaton.checkpoints.get(self.checkpoint) or self.automaton.checkpoints[START]
+from polaris_tui.desk import Desk, literal_menu
+from polaris_tui.menus import Ask, Change, Menu, Note, Option, Step
 
 
 def steps(desk: Desk) -> dict[str, Callable[[], Step]]:
@@ -76,82 +38,6 @@ def steps(desk: Desk) -> dict[str, Callable[[], Step]]:
         "connect": lambda: _connect(desk),
         "disconnect": lambda: _disconnect(desk),
     }
-
-
-# Literals, by predicate and parameters
-
-
-def literal_menu(
-    desk: Desk, title: str, then: Callable[[Literal], Step], people_first: bool = False
-) -> Menu:
-    """Asks for a fact: a predicate, then an entity for each parameter.
-
-    Args:
-        desk: what is edited.
-        title: what the fact is for.
-        then: what comes of it.
-        people_first: begin with what people bring about, which is what robots wait for.
-    """
-    domain = desk.world.domain
-    known = [p for p in domain.predicates.values() if not p.internal]
-    changing = [p for p in known if domain.robot_can_change(p.name)]
-    exogenous = [p for p in known if p not in changing and domain.people_can_change(p.name)]
-    ordered = [*exogenous, *changing] if people_first else [*changing, *exogenous]
-    return Menu(
-        title, tuple(o for p in ordered for o in _predicate(desk, title, p, then, people_first))
-    )
-
-
-def _predicate(
-    desk: Desk, title: str, predicate: Predicate, then: Callable[[Literal], Step], event: bool
-) -> Iterator[Option]:
-    words = desk.wording.fact if event else desk.wording.goal
-    blank = Literal(predicate.name, tuple(_blank(v) for v in predicate.parameters))
-    whose = (
-        "" if desk.world.domain.robot_can_change(predicate.name) else "only people bring it about"
-    )
-    for literal in (blank, blank.negation):
-        yield Option(words(literal), partial(_filled, desk, title, literal, 0, then, event), whose)
-
-
-def _blank(parameter: Variable) -> str:
-    return f"some {' or '.join(parameter.types) or 'thing'}"
-
-
-def _filled(
-    desk: Desk, title: str, literal: Literal, at: int, then: Callable[[Literal], Step], event: bool
-) -> Step:
-    """Asks for the entity of a parameter, and so on; the fact where all are known."""
-    parameters = desk.world.domain.predicates[literal.predicate].parameters
-    if at == len(parameters):
-        return then(literal)
-    words = desk.wording.fact if event else desk.wording.goal
-    options = []
-    for entity in desk.world.entities.values():
-        if desk.world.domain.fits(entity.type, parameters[at]) and entity.name not in literal.args:
-            args = (*literal.args[:at], entity.name, *literal.args[at + 1 :])
-            filled = replace(literal, args=args)
-            options.append(
-                Option(
-                    desk.wording.entity(entity.name),
-                    partial(_filled, desk, title, filled, at + 1, then, event),
-                    _place(desk, entity.name),
-                )
-            )
-    kind = " or ".join(parameters[at].types) or "thing"
-    if not options:
-        return Note(f"There is no {kind} for that in this world.")
-    return Menu(f"{sentence(words(literal))[:-1]}: which {kind}?", tuple(options))
-
-
-def _place(desk: Desk, entity: str) -> str:
-    """Where something is at the start, so that two of a kind can be told apart."""
-    world = desk.world
-    place = world.place_of(entity, world.initial)
-    return f"in {desk.wording.entity(place)}" if place and place != entity else ""
-
-
-# The actions
 
 
 def _add(desk: Desk) -> Step:
@@ -353,70 +239,3 @@ def _disconnect(desk: Desk) -> Step:
     if way is None:
         return Note(f"Nothing leads to {desk.here.name} already.")
     return Change(f"unconnect {desk.here.name}", (Disconnect(way.id),), desk.checkpoint)
-
-
-def pick_menu(desk: Desk) -> Step:
-    """All checkpoints, to go to one."""
-    return Menu(
-        "Go to which checkpoint?",
-        tuple(
-            Option(c.name, Perform("pick", c.id), desk.wording.goals(c.goals))
-            for c in desk.automaton.checkpoints.values()
-        ),
-    )
-
-
-def mend_menu(offers: Sequence[tuple[str, str, tuple[Edit, ...]]]) -> Step:
-    """The ways out of all problems, and the changes that warnings offer.
-
-    Args:
-        offers: what it mends, what it does, and the edits.
-    """
-    if not offers:
-        return Note("The plan has no problem that has a way out.")
-    return Menu(
-        "Ways out",
-        tuple(Option(t, Change(t, e), about) for about, t, e in offers),
-    )
-
-
-def tell_menu(waiting: Sequence[Sequence[Literal]], wording: Wording) -> Step:
-    """The conditionals that a run waits for."""
-    return Menu(
-        "What has happened?",
-        tuple(
-            Option(wording.events(when), Perform("tell", str(n)))
-            for n, when in enumerate(waiting, 1)
-        ),
-    )
-
-
-def log_menu(folder: Path | None) -> Step:
-    """The newest logs, and any other file."""
-    from polaris_nl.logs.paths import log_folder
-
-    found = (folder or log_folder()).glob("*.mcap")
-    paths = sorted(found, key=lambda p: p.name, reverse=True)[:MOST_LOGS]
-    options = [Option(p.name, Perform("log", str(p))) for p in paths]
-    other = Ask("Which file?", lambda x: Perform("log", x))
-    return Menu("Which log?", (*options, Option("another file", other)))
-
-
-def history_menu(undoable: Sequence[str], redoable: Sequence[str]) -> Step:
-    """All steps of the program's history, the newest first, "you are here" among them."""
-    if not undoable and not redoable:
-        return Note("Nothing was changed yet.")
-    options = [
-        Option(f"after: {label}", Perform("redo", str(n)), f"redo {n}")
-        for n, label in reversed(list(enumerate(reversed(redoable), 1)))
-    ]
-    here = undoable[-1] if undoable else "the beginning"
-    options.append(Option(f"now: {here}", Note("You are there."), "you are here"))
-    options += [
-        Option(f"after: {label}", Perform("undo", str(n)), f"undo {n}")
-        for n, label in enumerate(reversed(undoable[:-1]), 1)
-    ]
-    if undoable:
-        count = len(undoable)
-        options.append(Option("the beginning", Perform("undo", str(count)), f"undo {count}"))
-    return Menu("Where to go back, or forward, to", tuple(options))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable, Iterable
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import ClassVar
 
@@ -12,6 +13,7 @@ from textual.message import Message
 from textual.widget import Widget
 
 from polaris_nl.automaton.automaton import START
+from polaris_nl.execution.ros.profile import Profile
 from polaris_nl.model.state import Mutexes
 from polaris_nl.model.wording import PlainWording
 from polaris_nl.render.explanation import offers
@@ -19,18 +21,23 @@ from polaris_nl.render.timeline import Stop, branch_stops
 from polaris_nl.session import Session
 from polaris_nl.snapshot import Snapshot
 from polaris_tui import stepping, styles
-from polaris_tui.actions import Keymap, Situation
-from polaris_tui.authoring import Desk
+from polaris_tui.actions import Keymap
 from polaris_tui.board import Board
 from polaris_tui.conversation import Conversation
-from polaris_tui.deeds import editor
+from polaris_tui.desk import Desk
+from polaris_tui.editor import editor
 from polaris_tui.keeping import Leftover
 from polaris_tui.layout import TREE
 from polaris_tui.progress import Progress
+from polaris_tui.reasons import Situation
+from polaris_tui.running import Current
 from polaris_tui.scene import Scene
 from polaris_tui.settings import Settings
 from polaris_tui.state import State
 from polaris_tui.styles import LOOKS
+from polaris_tui.talking import Talking, Tell
+
+MakeTalking = Callable[[Session, AbstractContextManager[object], Tell, Current], Talking]
 
 
 class BaseApp(App[int]):
@@ -46,7 +53,8 @@ class BaseApp(App[int]):
         log: a log to be opened at once.
         listens_at: the folder where runs listen to other terminals; None for nowhere.
         elsewhere: where runs of this world listen that go on already.
-        talk: starts listening, where something can.
+        talk: makes what listens to speech; None where nothing can.
+        profile: the robot that runs move; None for the simulated world.
         settings_file: where settings are, for what is said about them.
     """
 
@@ -67,7 +75,8 @@ class BaseApp(App[int]):
         log: Path | None = None,
         listens_at: Path | None = None,
         elsewhere: Iterable[Path] = (),
-        talk: Callable[[], None] | None = None,
+        talk: MakeTalking | None = None,
+        profile: Profile | None = None,
         settings_file: str = "the settings",
     ) -> None:
         super().__init__()
@@ -80,7 +89,7 @@ class BaseApp(App[int]):
         self.animation_level = "none"
         self._live = live
         self._first_log = log
-        self._talk = talk
+        self._profile = profile
         self._patient = False  # a timer is set to show that a plan is still being made
         self._listens_at = listens_at
         self._elsewhere = tuple(elsewhere)
@@ -92,6 +101,7 @@ class BaseApp(App[int]):
             Progress(session.world.initial, activity="loading"),
             tree={"always": True, "never": False}.get(settings.tree),
             kept=kept,
+            robot=profile.title if profile is not None else "",
         )
         for theme in styles.themes():
             self.register_theme(theme)
@@ -99,6 +109,11 @@ class BaseApp(App[int]):
         self._unsubscribe: Callable[[], None] = lambda: None
         self._focused_before: Widget | None = None
         self._conversation = Conversation(session, self.tell)
+        self.talking: Talking | None = None
+        if talk is not None:
+            self.talking = talk(
+                session, self._conversation.turn, self.tell, lambda: self.state.current
+            )
         self.board = self.make_board()
         for action in self.keymap.actions:
             if action.keys:
@@ -167,7 +182,7 @@ class BaseApp(App[int]):
             loose=len(automaton.transitions) < len(automaton.checkpoints) - 1,
             elsewhere=bool(self._elsewhere),
             leftover=bool(self.leftovers),
-            listens=self._talk is not None,
+            listens=self.talking is not None,
             editor=bool(editor()),
         )
 
@@ -208,6 +223,9 @@ class BaseApp(App[int]):
             reading,
             state.slow,
             state.view == "map" and state.before_view == "plan" and reading is None,
+            state.attached,
+            state.ran_on if state.view == "run" else state.robot,
+            state.voice,
         )
 
     def draw(self) -> None:

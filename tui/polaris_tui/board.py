@@ -10,12 +10,12 @@ from textual.widgets import Static
 
 from polaris_nl.render.glyphs import Glyphs
 from polaris_tui import pane, prompt
-from polaris_tui.actions import View
 from polaris_tui.choosing import Choosing
 from polaris_tui.layout import WIDE, heights
 from polaris_tui.menus import Ask
 from polaris_tui.pane import Pane
 from polaris_tui.prompt import Prompt
+from polaris_tui.reasons import View
 from polaris_tui.reviewing import detail_heading, detail_rows
 from polaris_tui.scene import Scene
 from polaris_tui.styles import Look

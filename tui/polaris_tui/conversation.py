@@ -11,27 +11,22 @@ import threading
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from textual.message import Message
 
 from polaris_nl.automaton.edits import ReplaceProgram
-from polaris_nl.automaton.program import read_program, write_program
-from polaris_nl.model.errors import FileError, PolarisError
+from polaris_nl.automaton.program import read_program
+from polaris_nl.model.errors import PolarisError
 from polaris_nl.model.wording import Wording
 from polaris_nl.planning.reasons import Reasons, Step
 from polaris_nl.render.explanation import purpose_in_words
 from polaris_nl.render.program import numbered
 from polaris_nl.session import Session
+from polaris_tui.keeping import saved_as
 from polaris_tui.menus import Change
 from polaris_tui.messages import Answered, Edited, Explained, Opened, Told, Warmed
+from polaris_tui.running import Run
 from polaris_tui.transcript import Entry
-
-if TYPE_CHECKING:
-    from polaris_tui.remote import RemoteRun
-    from polaris_tui.running import Running
-
-    Run = Running | RemoteRun
 
 ANSWER_WAIT_S = 1.0
 """How long an answer waits for the plan; the plan's news come later then."""
@@ -59,6 +54,9 @@ class Conversation:
         self._session = session
         self._tell = tell
         self._ended = False
+        self.turn = (
+            threading.Lock()
+        )  # Held while something is carried out; speech waits for it, too.
         self._put_in = self._done = 0  # Each is counted in one thread alone.
         self._reasons: Reasons | None = None
         self._jobs: queue.SimpleQueue[_Job | None] = queue.SimpleQueue()
@@ -120,7 +118,8 @@ class Conversation:
     def _work(self) -> None:
         while (job := self._jobs.get()) is not None and not self._ended:
             try:
-                job.work()
+                with self.turn:
+                    job.work()
             except PolarisError as error:
                 self._tell(Told(job.ticket, Entry(str(error), "! ", "bad")))
             except Exception as error:
@@ -198,13 +197,7 @@ class Conversation:
         self._edit(Change(label, (ReplaceProgram(loaded),)), ticket)
 
     def _save_as(self, path: Path, ticket: int) -> None:
-        if path.exists():
-            there = read_program(path)  # Only ever replaces a program, and never an unlike one.
-            if there != self._session.program:
-                raise FileError(f"There is another program in {path} already; choose another name.")
-        write_program(self._session.program, path)
-        self._session.path = path
-        self._tell(Told(ticket, Entry(f"Kept in {path.name} from now on.")))
+        self._tell(Told(ticket, Entry(saved_as(self._session, path))))
 
     def _explain(self, checkpoint: str, action: int | None, ticket: int) -> None:
         from polaris_nl.commands.why import Asker

@@ -2,25 +2,22 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING
 
 from polaris_nl.model.errors import PolarisError
 from polaris_tui import authoring, stepping
-from polaris_tui.actions import BY_ID, View
+from polaris_tui.actions import BY_ID
 from polaris_tui.choosing import Choosing
 from polaris_tui.deeds_program import Editing
 from polaris_tui.menus import Ask, Change, Menu, Note, Option, Perform, Step
 from polaris_tui.pane import Pane
+from polaris_tui.reasons import View
+from polaris_tui.screen import Screen
 from polaris_tui.state import State
 from polaris_tui.styles import LOOKS
 from polaris_tui.transcript import Entry
-
-if TYPE_CHECKING:
-    from polaris_tui.face import Face
 
 
 class Deeds(Editing):
@@ -31,7 +28,7 @@ class Deeds(Editing):
         state: what it remembers.
     """
 
-    def __init__(self, app: Face, state: State) -> None:
+    def __init__(self, app: Screen, state: State) -> None:
         super().__init__(app, state)
         self._do: dict[str, Callable[[str], None]] = {
             "mend": lambda about: self._mend(),
@@ -173,7 +170,7 @@ class Deeds(Editing):
         state.before_view, state.view = state.view, view
         self._app.board.main.reset()
         if view in ("plan", "review"):  # There the arrows step.
-            self._app.board.main.focus()
+            self._app.screen.set_focus(self._app.board.main)
         if view == "review":
             self._app.follow_reading()
 
@@ -293,12 +290,7 @@ class Deeds(Editing):
             else:
                 self._app.ask(state.choosing.last)
         elif not self._app.board.prompt.has_focus:
-            self._app.board.prompt.focus()
+            self._app.screen.set_focus(self._app.board.prompt)
         elif state.view != "program":
             state.view = self._home if state.view != "review" else "program"
             state.reading = state.reading if state.view == "review" else None
-
-
-def editor() -> str:
-    """The user's editor, or ""."""
-    return os.environ.get("VISUAL") or os.environ.get("EDITOR") or ""

@@ -6,9 +6,9 @@ from pathlib import Path
 
 from polaris_nl.planning.result import Problem, Warning
 from polaris_nl.render.explanation import offers
-from polaris_tui import authoring
+from polaris_tui import offering
 from polaris_tui.deeds_run import Going
-from polaris_tui.menus import Ask, Change, Menu, Option, Perform
+from polaris_tui.menus import Change
 
 
 class Editing(Going):
@@ -17,7 +17,7 @@ class Editing(Going):
     def _mend(self) -> None:
         plan = self._app.session.snapshot.plan
         found = offers(plan) if plan else ()
-        self.follow(authoring.mend_menu([(self._named(t), r.text, r.edits) for t, r in found]))
+        self.follow(offering.mend_menu([(self._named(t), r.text, r.edits) for t, r in found]))
 
     def _named(self, trouble: Problem | Warning) -> str:
         """The checkpoint that something is wrong with."""
@@ -49,7 +49,7 @@ class Editing(Going):
         if about:
             self._app.pick(about)
         else:
-            self.follow(authoring.pick_menu(self._app.desk()))
+            self.follow(offering.pick_menu(self._app.desk()))
 
     def _travel(self, about: str, command: str) -> None:
         if about:
@@ -59,21 +59,13 @@ class Editing(Going):
 
     def _history(self) -> None:
         snapshot = self._app.session.snapshot
-        self.follow(authoring.history_menu(snapshot.undoable, snapshot.redoable))
+        self.follow(offering.history_menu(snapshot.undoable, snapshot.redoable))
 
     def _recover(self, about: str) -> None:
         if about:
             self._app.load(Path(about), "the program of an earlier session")
             return
-        options = tuple(
-            Option(
-                self._app.read_back(left.program.automaton),
-                Perform("recover", str(left.path)),
-                left.path.name,
-            )
-            for left in self._app.leftovers
-        )
-        self.follow(Menu("Which one?", options))
+        self.follow(offering.leftover_menu(self._app.leftovers, self._app.read_back))
 
     def _shape(self) -> None:
         self._state.tree = not self._app.as_tree
@@ -82,7 +74,4 @@ class Editing(Going):
         if about:
             self._app.save_as(Path(about).expanduser())
             return
-        initial = f"{self._app.session.world.name}.polaris.json"
-        self.follow(
-            Ask("Keep the program in which file?", lambda x: Perform("save-as", x), initial)
-        )
+        self.follow(offering.save_menu(self._app.session.world.name))

@@ -4,19 +4,17 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from polaris_nl.automaton.automaton import START
 from polaris_nl.execution.state import HumanCommand
-from polaris_tui import authoring, stepping
-from polaris_tui.actions import View
+from polaris_nl.model.text import capital
+from polaris_tui import offering, stepping
 from polaris_tui.menus import Ask, Menu, Note, Option, Perform, Step
 from polaris_tui.phrases import Order
+from polaris_tui.reasons import View
+from polaris_tui.screen import Screen
 from polaris_tui.state import State
 from polaris_tui.transcript import Entry
-
-if TYPE_CHECKING:
-    from polaris_tui.face import Face
 
 
 class Doing:
@@ -27,7 +25,7 @@ class Doing:
         state: what it remembers.
     """
 
-    def __init__(self, app: Face, state: State) -> None:
+    def __init__(self, app: Screen, state: State) -> None:
         self._app = app
         self._state = state
 
@@ -93,9 +91,10 @@ class Going(Doing):
 
     def confirm(self, read_out: str) -> None:
         """Asks for the yes, below what will happen."""
+        robot = self._state.robot
         self.follow(
             Menu(
-                "Shall I start?",
+                f"{capital(robot)} will move. Shall I start?" if robot else "Shall I start?",
                 (
                     Option("yes, start", Perform("say", "yes")),
                     Option("no", Perform("say", "no")),
@@ -127,13 +126,13 @@ class Going(Doing):
             self._state.note(said=wording.events(when))
             current.command(HumanCommand("happened", when))
             return
-        self.follow(authoring.tell_menu(waiting, wording))
+        self.follow(offering.tell_menu(waiting, wording))
 
     def _log(self, about: str) -> None:
         if about:
             self._app.open_log(Path(about).expanduser())
             return
-        self.follow(authoring.log_menu(self._app.logs))
+        self.follow(offering.log_menu(self._app.logs))
 
     def _problem(self, step: int) -> None:
         reading = self._state.reading

@@ -2,30 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
-from textual.message import Message
-
 from polaris_nl.automaton.automaton import Automaton
-from polaris_nl.automaton.program import write_program
+from polaris_nl.automaton.edits import ReplaceProgram
 from polaris_nl.logs.paths import new_log_path
 from polaris_nl.model.errors import PolarisError
 from polaris_nl.planning.result import BranchingPlan
 from polaris_nl.snapshot import Snapshot
 from polaris_tui.base import BaseApp
-from polaris_tui.deeds import editor
+from polaris_tui.editor import edited
 from polaris_tui.menus import Ask, Change, Menu
 from polaris_tui.pane import Pane
 from polaris_tui.phrases import Order
-from polaris_tui.progress import Progress
+from polaris_tui.progress import Activity, Progress
+from polaris_tui.remote import ATTACHED, RemoteRun
 from polaris_tui.running import Running
+from polaris_tui.serving import served
 from polaris_tui.styles import Look
 from polaris_tui.transcript import Entry
-
-ATTACHED = (
-    "This run was begun in another terminal. It can be stopped from here; quitting lets it go on."
-)
 
 
 class Face(BaseApp):
@@ -71,30 +66,17 @@ class Face(BaseApp):
         self._conversation.open_log(path, self.state.note(said=f"log {path.name}"))
 
     def talk(self) -> None:
-        """Starts listening."""
-        if self._talk is not None:
-            self._talk()
+        """Starts listening, or listens again."""
+        if self.talking is not None:
+            self.talking.key()
 
     def edit_file(self) -> None:
         """Opens the program in the user's editor, and takes what it leaves."""
-        import shlex
-        import subprocess
-        import tempfile
-
-        with tempfile.TemporaryDirectory() as folder:
-            path = Path(folder) / "program.polaris.json"
-            try:
-                write_program(self.session.program, path)
-                with self.suspend():
-                    subprocess.run([*shlex.split(editor()), str(path)], check=False)
-                kept = path.rename(Path(folder) / "edited.polaris.json")
-                from polaris_nl.automaton.edits import ReplaceProgram
-                from polaris_nl.automaton.program import read_program
-
-                program = read_program(kept).automaton
-            except (PolarisError, OSError) as error:
-                self.state.note(Entry(f"The program stays as it was. {error}", "! ", "bad"))
-                return
+        try:
+            program = edited(self.session.program, self.suspend())
+        except (PolarisError, OSError) as error:
+            self.state.note(Entry(f"The program stays as it was. {error}", "! ", "bad"))
+            return
         if program == self.session.snapshot.automaton:
             self.state.note(Entry("Nothing was changed."))
         else:
@@ -117,13 +99,13 @@ class Face(BaseApp):
             self.board.prompt.serve("ask", question.initial)
         else:
             self.board.prompt.serve("menu")
-        self.board.prompt.focus()
+        self.screen.set_focus(self.board.prompt)
 
     def asked_enough(self) -> None:
         """Gives the input line back to sentences, and the focus to where it was."""
         self.board.prompt.serve("sentence")
         if self._focused_before is not None:
-            self._focused_before.focus()
+            self.screen.set_focus(self._focused_before)
         self._focused_before = None
 
     def pick(self, checkpoint: str) -> None:
@@ -131,7 +113,7 @@ class Face(BaseApp):
         self.state.view = "program"
         self.state.picked = checkpoint
         self.draw()
-        self.board.main.focus()
+        self.screen.set_focus(self.board.main)
         self.board.main.pick(checkpoint)
 
     def tell_briefly(self, text: str) -> None:
@@ -167,7 +149,8 @@ class Face(BaseApp):
 
     def leave(self) -> None:
         """Quits; a run is stopped first, and the second time nothing is waited for."""
-        if not isinstance(self.state.current, Running) or self.state.leaving:
+        current = self.state.current
+        if current is None or not current.ours or self.state.leaving:
             self.exit(0)  # A run of another terminal goes on.
             return
         self.state.leaving = True
@@ -183,44 +166,25 @@ class Face(BaseApp):
 
     def _start(self, snapshot: Snapshot, plan: BranchingPlan) -> None:
         log = new_log_path(self.session.world.name, self.logs) if self.logs else None
-        run = Running(self.session, snapshot, plan, self.tell, self._live, log)
+        before, profile = self.session.past, self._profile
+        run = Running(self.session, snapshot, plan, self.tell, self._live, log, before, profile)
         if self._listens_at is not None:
-            run.tell = self._served(run)
-        self.state.current = run
-        self.state.progress = Progress(self.session.world.initial, activity="running")
-        if self.state.view != "map":
+            run.tell, trouble = served(run, self.session, self._listens_at, self.tell)
+            if trouble:
+                self.state.note(Entry(trouble, "! "))
+        self.state.current, self.state.ran_on = run, self.state.robot
+        activity: Activity = "connecting" if self.state.robot else "running"
+        self.state.progress = Progress(self.session.world.initial, activity=activity)
+        if self.state.view == "map":
+            self.state.before_view = "run"  # It is of the run now, no more of a step of the plan.
+        else:
             self.state.view = "run"
         self.session.running = True
-        self.state.ran = snapshot
+        self.state.ran, self.state.attached = snapshot, False
         self.state.current.start()
-
-    def _served(self, run: Running) -> Callable[[Message], object]:
-        """Lets other terminals see and command a run; returns whom it tells what happens."""
-        from polaris_nl.automaton.program import program_json
-        from polaris_nl.planning.plan_json import plan_json
-        from polaris_tui.remote import RunServer
-
-        program = program_json(self.session.program_of(run.snapshot.automaton))
-        plan = plan_json(run.plan, run.snapshot.automaton)
-        hello = {"world": self.session.world.name, "program": program, "plan": plan}
-        try:
-            assert self._listens_at is not None
-            server = RunServer(hello, run.command, self._listens_at)
-        except OSError as error:
-            text = f"No other terminal will be able to stop this run ({error})."
-            self.state.note(Entry(text, "! "))
-            return self.tell
-
-        def both(message: Message) -> None:
-            server.tell(message)
-            self.tell(message)
-
-        return both
 
     def attach(self) -> None:
         """Shows the run that goes on elsewhere; it can be stopped, paused and told things from here."""
-        from polaris_tui.remote import RemoteRun
-
         try:
             run = RemoteRun(self._elsewhere[-1], self.tell)
         except PolarisError as error:
@@ -228,6 +192,7 @@ class Face(BaseApp):
             return
         self._elsewhere = self._elsewhere[:-1]
         self.state.current, self.state.ran = run, run.snapshot
+        self.state.ran_on, self.state.attached = run.robot, True
         self.state.progress = Progress(self.session.world.initial, activity="running")
         self.state.view = "run"
         self.state.note(Entry(ATTACHED))

@@ -8,8 +8,9 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-from polaris_nl.automaton.program import Program, read_program
-from polaris_nl.model.errors import PolarisError
+from polaris_nl.automaton.program import Program, read_program, write_program
+from polaris_nl.model.errors import FileError, PolarisError
+from polaris_nl.session import Session
 
 
 def state_folder() -> Path:
@@ -62,6 +63,20 @@ def tidied(path: Path) -> bool:
     except (PolarisError, OSError):
         pass
     return False
+
+
+def saved_as(session: Session, path: Path) -> str:
+    """Keeps a session's program in another file from now on; says so.
+
+    Raises:
+        FileError: the file is another program's, or can't be written.
+        PolarisError: what is there is no program.
+    """
+    if path.exists() and read_program(path) != session.program:
+        raise FileError(f"There is another program in {path} already; choose another name.")
+    write_program(session.program, path)
+    session.path = path
+    return f"Kept in {path.name} from now on."
 
 
 def _alive(process: int) -> bool:

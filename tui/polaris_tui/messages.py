@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
+from typing import Literal as OneOf
 
 from textual.message import Message
 
@@ -10,10 +11,14 @@ from polaris_nl.execution.events import Event
 from polaris_nl.model.wording import Wording
 from polaris_nl.planning.result import BranchingPlan
 from polaris_nl.snapshot import Answer, Snapshot
+from polaris_tui.phrases import Order
 from polaris_tui.transcript import Entry
 
 if TYPE_CHECKING:
+    from polaris_nl.hands_free.conversation import Reply
     from polaris_tui.replay import Replay
+
+VoiceState = OneOf["", "opening", "listening", "waiting", "asleep", "speaking", "deaf", "off"]
 
 
 class Warmed(Message):
@@ -96,3 +101,31 @@ class RunOver(Message):
     def __init__(self, *entries: Entry) -> None:
         super().__init__()
         self.entries = entries
+
+
+class Listened(Message):
+    """The voice side has a new state, or a sentence to say about it; both may be "".
+
+    `opening`, the states of `speech.modes`, `deaf` where it can't listen, `off` where it has ended.
+    """
+
+    def __init__(self, state: VoiceState, text: str = "") -> None:
+        super().__init__()
+        self.state = state
+        self.text = text
+
+
+class Ordered(Message):
+    """A quick word was heard, "stop" or "pause"; a run has been told already."""
+
+    def __init__(self, order: Order) -> None:
+        super().__init__()
+        self.order = order
+
+
+class Spoken(Message):
+    """Something was said and carried out."""
+
+    def __init__(self, reply: Reply) -> None:
+        super().__init__()
+        self.reply = reply

@@ -124,6 +124,9 @@ def _changes(scene: Scene, stop: Stop, width: int) -> list[Row]:
 def run_rows(scene: Scene, width: int, height: int) -> list[Row]:
     """What is done and to come, what is waited for, expected beside perceived, and the map."""
     now = scene.progress
+    if now.started is None and now.activity:
+        text = f"I'm looking for {scene.robot}. Nothing has been told to move."
+        return wrapped(text if scene.robot else "The run begins.", width)
     if now.started is None:
         key = scene.keymap.first("run")
         return wrapped(f"Nothing was run yet. {key} reads out what will happen, and asks.", width)

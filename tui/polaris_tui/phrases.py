@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import Literal as OneOf
 
-from polaris_tui.actions import View
+from polaris_tui.reasons import View
 
 Order = OneOf["stop", "pause", "resume"]
 

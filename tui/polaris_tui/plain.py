@@ -6,44 +6,54 @@ every answer is a few sentences. Actions are named after a colon (`:add`, `:plan
 
 from __future__ import annotations
 
+import contextlib
 import threading
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import replace
 from pathlib import Path
 
-from textual.message import Message
-
 from polaris_nl.answers import change_in_words
-from polaris_nl.automaton.automaton import START
-from polaris_nl.execution.state import HumanCommand
+from polaris_nl.automaton.edits import ReplaceProgram
+from polaris_nl.execution.ros.profile import Profile
 from polaris_nl.model.errors import PolarisError, did_you_mean
+from polaris_nl.model.text import capital
 from polaris_nl.planning.result import BranchingPlan
 from polaris_nl.render.explanation import offers
-from polaris_nl.render.layout import Row, wrapped
-from polaris_nl.render.timeline import branch_stops
 from polaris_nl.session import Session
-from polaris_nl.snapshot import Snapshot
-from polaris_tui import authoring, stepping
-from polaris_tui.actions import ACTIONS, BY_ID, Situation
-from polaris_tui.authoring import Desk
+from polaris_tui import authoring, offering
+from polaris_tui.actions import ACTIONS, BY_ID
 from polaris_tui.choosing import Choosing
-from polaris_tui.menus import Ask, Change, Menu, Note, Perform, Step
-from polaris_tui.messages import Happened, RunOver
-from polaris_tui.panels import expectation_rows, map_rows, told_rows
+from polaris_tui.commanding import Commanding
+from polaris_tui.editor import edited
+from polaris_tui.keeping import saved_as
+from polaris_tui.lines import Places
+from polaris_tui.menus import Ask, Change, Menu, Perform, Step
+from polaris_tui.panels import map_rows
 from polaris_tui.phrases import action_asked, order_in
-from polaris_tui.progress import Progress, advanced
-from polaris_tui.reviewing import detail_rows, review_rows
-from polaris_tui.running import Running
-from polaris_tui.scene import Reading, Scene
-from polaris_tui.transcript import answer_entries, event_entry
-from polaris_tui.views import outline_rows, status, trouble_rows
+from polaris_tui.scene import Scene
+from polaris_tui.transcript import answer_entries
 
-END_S = 5.0
 HINT = "Say what the robot should achieve. A colon lists what else can be done; help tells more."
 NOT_HERE = "That is about the screen, and there is none here."
+ON_SCREEN = frozenset(
+    {
+        *(
+            "shape",
+            "answers",
+            "copy",
+            "theme",
+            "open",
+            "talk",
+            "prompt",
+            "next-pane",
+            "previous-pane",
+        ),
+        *("up", "down", "left", "right", "top", "bottom", "page-up", "page-down"),
+    }
+)
+"""The actions that move about on a screen, or want one; all others can be done line by line."""
 
 
-class Plain:
+class Plain(Commanding):
     """The line mode on one session.
 
     Args:
@@ -53,6 +63,8 @@ class Plain:
         width: columns of a line.
         live: runs go in real time.
         logs: the folder for the logs of runs; the usual one by default.
+        profile: the robot that runs move; None for the simulated world.
+        places: what other sessions have left behind, and where runs listen.
     """
 
     def __init__(
@@ -63,18 +75,13 @@ class Plain:
         width: int = 78,
         live: bool = True,
         logs: Path | None = None,
+        profile: Profile | None = None,
+        places: Places = Places(),
     ) -> None:
-        self._session = session
-        self._show = show
-        self._scene = scene
-        self._width = width
-        self._live = live
-        self._logs = logs
-        self._choosing = Choosing()
-        self._picked = START
-        self._current: Running | None = None
+        super().__init__(session, show, scene, width, live, logs, profile, places)
         self._over = threading.Event()
         self._leaving = False
+        self.hung_up = False
         self._do: dict[str, Callable[[str], None]] = {
             "mend": lambda about: self._mend(),
             "pick": self._pick,
@@ -82,6 +89,9 @@ class Plain:
             "undo": lambda about: self._travel(int(about or 1)),
             "redo": lambda about: self._travel(-int(about or 1)),
             "history": lambda about: self._history(),
+            "recover": self._recover,
+            "editor": lambda about: self._edit_file(),
+            "save-as": self._save_as,
             "plan": lambda about: self._plan(),
             "next": lambda about: self._step(1),
             "previous": lambda about: self._step(-1),
@@ -94,6 +104,7 @@ class Plain:
             "pause": lambda about: self._order("pause"),
             "stop": lambda about: self._order("stop"),
             "tell": self._tell,
+            "attach": lambda about: self._attach(),
             "log": self._log,
             "next-problem": lambda about: self._problem(1),
             "last-problem": lambda about: self._problem(-1),
@@ -121,9 +132,14 @@ class Plain:
                 self._say(f"! {error}")
             if self._leaving:
                 break
-        if self._current is not None:
-            self._order("stop")
-            self._current.wait(END_S)
+        current = self._current
+        if current is not None and current.ours and self.hung_up:
+            current.wait(None)  # The line is gone; the run goes on, and listens to other terminals.
+        elif current is not None:
+            current.end()
+
+    def _leave(self) -> None:
+        self._leaving = True
 
     def _take(self, line: str) -> None:
         if self._choosing.last is not None:
@@ -147,6 +163,8 @@ class Plain:
                 current.command(command)
                 return
         answer = self._session.say(line)
+        if self._profile is not None and self._session.awaits_yes:
+            self._say(f"{capital(self._profile.title)} will move.", "! ")
         for entry in answer_entries(answer):
             self._say(entry.text, entry.lead)
         plan = answer.snapshot.plan
@@ -244,11 +262,11 @@ class Plain:
     def _mend(self) -> None:
         plan = self._session.snapshot.plan
         found = offers(plan) if plan else ()
-        self._follow(authoring.mend_menu([("", r.text, r.edits) for _, r in found]))
+        self._follow(offering.mend_menu([("", r.text, r.edits) for _, r in found]))
 
     def _pick(self, about: str) -> None:
         if not about:
-            self._follow(authoring.pick_menu(self._desk()))
+            self._follow(offering.pick_menu(self._desk()))
             return
         self._picked = about
         self._say(f"You are at {self._desk().here.name}.")
@@ -263,189 +281,32 @@ class Plain:
 
     def _history(self) -> None:
         snapshot = self._session.snapshot
-        self._follow(authoring.history_menu(snapshot.undoable, snapshot.redoable))
+        self._follow(offering.history_menu(snapshot.undoable, snapshot.redoable))
 
-    def _program(self) -> None:
-        self._scene = replace(self._scene, reading=None)
-        now = self._now()
-        self._say(f"{status(now)[0]}. You are at {self._desk().here.name}.")
-        self._rows(outline_rows(now, self._width, True))
-        self._rows(trouble_rows(now, self._width))
-
-    # The plan
-
-    def _plan(self) -> None:
-        leaf = stepping.first_leaf(self._session.snapshot.automaton, self._picked)
-        self._scene = replace(self._scene, steps=stepping.Steps(leaf, 0))
-        self._step(0)
-
-    def _step(self, by: int) -> None:
-        steps, plan = self._scene.steps, self._session.snapshot.plan
-        if plan is None:
-            return
-        stops = branch_stops(
-            self._session.snapshot.automaton, plan, steps.leaf, self._session.wording
-        )
-        self._scene = replace(self._scene, steps=stepping.moved(steps, stops, by))
-        self._rows(told_rows(self._now(), stops, self._scene.steps.at, self._width))
-
-    def _way(self, by: int) -> None:
-        stops = self._now().stops()
-        automaton = self._session.snapshot.automaton
-        steps = stepping.other_way(self._scene.steps, stops, automaton, by)
-        self._scene = replace(self._scene, steps=steps)
-        self._step(0)
-
-    # Runs
-
-    def _start(self, snapshot: Snapshot, plan: BranchingPlan) -> None:
-        self._scene = replace(self._scene, progress=Progress(self._session.world.initial))
-        log = None
-        if self._logs is not None:
-            from polaris_nl.logs.paths import new_log_path
-
-            log = new_log_path(self._session.world.name, self._logs)
-        self._over.clear()
-        self._session.running = True
-        self._current = Running(self._session, snapshot, plan, self._happened, self._live, log)
-        self._current.start()
-
-    def _happened(self, message: Message) -> None:
-        """In the run's thread: prints what happens."""
-        current = self._current
-        if isinstance(message, Happened) and current is not None:
-            progress = advanced(self._scene.progress, message.event, current.plan)
-            self._scene = replace(self._scene, progress=progress)
-            seconds = message.event.time - (progress.started or message.event.time)
-            entry = event_entry(message.event, seconds, self._scene.glyphs)
-            if entry is not None:
-                self._say(entry.text, entry.lead)
-        elif isinstance(message, RunOver):
-            self._current = None
-            self._session.running = False
-            for entry in message.entries:
-                self._say(entry.text, entry.lead)
-            self._over.set()
-
-    def _order(self, order: str) -> None:
-        if self._current is None:
-            self._sentence(order)
-        elif order == "pause" and self._scene.progress.activity == "paused":
-            self._current.command(HumanCommand("resume"))
-        elif order == "pause":
-            self._current.command(HumanCommand("pause"))
-        else:
-            self._current.command(HumanCommand("resume" if order == "resume" else "stop"))
-
-    def _watch(self) -> None:
-        now = self._now()
-        self._say(status(now)[0])
-        self._rows(expectation_rows(now, now.progress, self._width))
-
-    def _tell(self, about: str) -> None:
-        waiting, wording = self._scene.progress.waiting, self._session.wording
-        if about and self._current is not None:
-            self._current.command(HumanCommand("happened", waiting[int(about) - 1]))
-            return
-        self._follow(authoring.tell_menu(waiting, wording))
-
-    # Logs
-
-    def _log(self, about: str) -> None:
+    def _recover(self, about: str) -> None:
+        left = self._places.leftovers
         if not about:
-            self._follow(authoring.log_menu(self._logs))
+            back = self._session.understanding.read_back
+            self._follow(offering.leftover_menu(left, back))
             return
-        from polaris_tui.replay import open_replay
+        self._edit(offering.recovered(Path(about)))
 
-        replay = open_replay(Path(about).expanduser(), self._session.world)
-        self._scene = replace(self._scene, reading=Reading(replay), world=replay.world)
-        self._rows(review_rows(self._now(), self._width))
-        self._say("Say :next-problem, :filter, :compare or :chain; :program goes back.")
-
-    def _problem(self, step: int) -> None:
-        reading = self._scene.reading
-        found = reading.replay.problem(reading.number, step) if reading else None
-        if reading is None or found is None:
-            self._say("There is no further problem.")
+    def _edit_file(self) -> None:
+        try:
+            program = edited(self._session.program, contextlib.nullcontext())
+        except (PolarisError, OSError) as error:
+            self._say(f"The program stays as it was. {error}", "! ")
             return
-        self._scene = replace(self._scene, reading=replace(reading, number=found, below="event"))
-        self._rows(detail_rows(self._now(), self._width))
+        if program == self._session.snapshot.automaton:
+            self._say("Nothing was changed.")
+        else:
+            self._edit(Change("edit the file", (ReplaceProgram(program),)))
 
-    def _filter(self) -> None:
-        def filtered(words: str) -> Step:
-            reading = self._scene.reading
-            if reading is not None:
-                wanted = "" if words == "*" else words
-                self._scene = replace(self._scene, reading=replace(reading, words=wanted))
-                self._rows(review_rows(self._now(), self._width))
-            return Note("")
-
-        self._follow(Ask("Only events with these words (* for all)", filtered))
-
-    def _below(self, what: str) -> None:
-        if self._scene.reading is not None:
-            self._scene = replace(self._scene, reading=replace(self._scene.reading, below=what))
-            self._rows(detail_rows(self._now(), self._width))
-
-    # Parts
-
-    def _leave(self) -> None:
-        self._leaving = True
-
-    def _say(self, text: str, lead: str = "") -> None:
-        self._rows(wrapped(text, self._width, lead))
-
-    def _rows(self, rows: Iterable[Row]) -> None:
-        for row in rows:
-            self._show(row.text.rstrip())
-
-    def _desk(self) -> Desk:
-        automaton = self._session.snapshot.automaton
-        names = self._session.understanding.names
-        picked = self._picked if self._picked in automaton.checkpoints else START
-        return Desk(
-            self._session.world,
-            self._session.wording,
-            automaton,
-            picked,
-            names.checkpoint,
-            names.renamed,
-        )
-
-    def _now(self) -> Scene:
-        """The scene as it is."""
-        scene, reading = self._scene, self._scene.reading
-        if reading is not None:
-            snapshot = Snapshot(0, reading.replay.automaton, reading.replay.plan, "planned")
-            progress = reading.replay.progress(reading.number)
-            return replace(
-                scene, snapshot=snapshot, progress=progress, wording=self._session.wording
-            )
-        snapshot = self._session.wait()
-        return replace(
-            scene,
-            world=self._session.world,
-            snapshot=snapshot,
-            wording=self._session.wording,
-            mutexes=self._session.planner.mutexes,
-        )
-
-    def _situation(self) -> Situation:
-        snapshot = self._session.snapshot
-        automaton, plan = snapshot.automaton, snapshot.plan
-        reading, current = self._scene.reading, self._current
-        return Situation(
-            view="review" if reading else "plan" if self._scene.steps.leaf != START else "program",
-            checkpoint=self._picked if self._picked in automaton.checkpoints else START,
-            empty=len(automaton.checkpoints) == 1,
-            running=current is not None,
-            waiting=len(self._scene.progress.waiting),
-            undoable=bool(snapshot.undoable),
-            redoable=bool(snapshot.redoable),
-            repairs=len(offers(plan)) if plan else 0,
-            planned=plan is not None and bool(plan.segments),
-            loose=len(automaton.transitions) < len(automaton.checkpoints) - 1,
-        )
+    def _save_as(self, about: str) -> None:
+        if about:
+            self._say(saved_as(self._session, Path(about).expanduser()))
+        else:
+            self._follow(offering.save_menu(self._session.world.name))
 
 
 def typed_lines(prompt: str = "> ") -> Iterator[str]:
@@ -457,5 +318,5 @@ def typed_lines(prompt: str = "> ") -> Iterator[str]:
     while True:
         try:
             yield input(prompt if sys.stdin.isatty() else "")
-        except (EOFError, KeyboardInterrupt):
+        except (EOFError, KeyboardInterrupt, OSError):
             return

@@ -28,9 +28,11 @@ from polaris_nl.model.state import State
 from polaris_nl.planning.result import BranchingPlan
 from polaris_nl.render.program import first_numbers
 
-Activity = OneOf["", "loading", "running", "waiting", "paused", "deviating", "stopping"]
+Activity = OneOf[
+    "", "loading", "connecting", "running", "waiting", "paused", "deviating", "stopping"
+]
 
-RUNS: tuple[Activity, ...] = ("running", "waiting", "paused", "deviating", "stopping")
+RUNS: tuple[Activity, ...] = ("connecting", "running", "waiting", "paused", "deviating", "stopping")
 """What goes on while a run does."""
 
 Place = tuple[str, int | None]
@@ -81,7 +83,9 @@ def advanced(progress: Progress, event: Event, plan: BranchingPlan) -> Progress:
     """The progress after an event of a run of this plan."""
     match event:
         case RunStarted():
-            return Progress(State(frozenset(_literals(event.beliefs))), event.time, "running")
+            # A stop that was said before the robot had answered is still on its way.
+            activity: Activity = "stopping" if progress.activity == "stopping" else "running"
+            return Progress(State(frozenset(_literals(event.beliefs))), event.time, activity)
         case Observed():
             state = progress.state.change(_literals(event.removed), _literals(event.added))
             return replace(progress, state=state)

@@ -14,6 +14,7 @@ import json
 import os
 import socket
 import threading
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -32,10 +33,15 @@ from polaris_tui.messages import Happened, RunOver
 from polaris_tui.replay import plan_of
 from polaris_tui.transcript import Entry
 
+ATTACHED = (
+    "This run was begun in another terminal. It can be stopped from here; quitting lets it go on."
+)
 Tell = Callable[[Message], object]
 KINDS = ("stop", "pause", "resume", "happened")
 LONGEST_PATH = 100
 """Bytes of a socket's path that every system takes."""
+LAST_WORDS_S = 1.0
+"""How long terminals are given to read how a run has ended."""
 
 
 def runs_folder() -> Path:
@@ -70,8 +76,9 @@ class RunServer:
     ) -> None:
         self._command = command
         self._lines = [_line({"hello": hello})]
-        self._clients: list[socket.socket] = []
-        self._lock = threading.Lock()
+        self._over = False
+        self._clients: dict[socket.socket, threading.Thread] = {}
+        self._changed = threading.Condition()
         self._path = folder / f"{os.getpid()}.sock"
         self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
         folder.mkdir(parents=True, exist_ok=True, mode=0o700)
@@ -83,7 +90,7 @@ class RunServer:
         threading.Thread(target=self._accept, name="run-server", daemon=True).start()
 
     def tell(self, message: Message) -> None:
-        """Passes a message of the run on; after its end nobody is listened to any more."""
+        """Passes a message of the run on, and waits for nobody; after its end nobody is heard any more."""
         if isinstance(message, Happened):
             event = message.event
             self._send(_line({"topic": event.topic, "event": event_json(event)}))
@@ -92,23 +99,23 @@ class RunServer:
             self.close()
 
     def close(self) -> None:
-        """Ends it."""
+        """Ends it; terminals that still read are given the rest for a while."""
         self._path.unlink(missing_ok=True)
-        with self._lock:
-            for part in (self._socket, *self._clients):
-                with contextlib.suppress(OSError):
-                    part.shutdown(socket.SHUT_RDWR)
-                part.close()
-            self._clients.clear()
+        with self._changed:
+            self._over = True
+            self._changed.notify_all()
+            clients = dict(self._clients)
+        _end(self._socket)
+        deadline = time.monotonic() + LAST_WORDS_S
+        for thread in clients.values():
+            thread.join(max(deadline - time.monotonic(), 0.0))
+        for client in clients:
+            _end(client)
 
     def _send(self, line: bytes) -> None:
-        with self._lock:
+        with self._changed:
             self._lines.append(line)
-            for client in tuple(self._clients):
-                try:
-                    client.sendall(line)
-                except OSError:
-                    self._clients.remove(client)
+            self._changed.notify_all()
 
     def _accept(self) -> None:
         while True:
@@ -116,16 +123,29 @@ class RunServer:
                 client, _ = self._socket.accept()
             except OSError:
                 return
-            client.settimeout(5.0)  # A terminal that doesn't read must not hold the run up.
-            with self._lock, contextlib.suppress(OSError):
-                client.sendall(b"".join(self._lines))
-                self._clients.append(client)
+            writer = threading.Thread(target=self._write, args=(client,), daemon=True)
+            with self._changed:
+                self._clients[client] = writer
+            writer.start()
             threading.Thread(target=self._listen, args=(client,), daemon=True).start()
 
+    def _write(self, client: socket.socket) -> None:
+        """Gives a terminal all that has happened and happens; one that doesn't read holds only this up."""
+        told, over = 0, False
+        with contextlib.suppress(OSError):
+            while not over:
+                with self._changed:
+                    while len(self._lines) == told and not self._over:
+                        self._changed.wait()
+                    news, over = b"".join(self._lines[told:]), self._over
+                    told = len(self._lines)
+                client.sendall(news)
+        with self._changed:
+            self._clients.pop(client, None)
+        _end(client)
+
     def _listen(self, client: socket.socket) -> None:
-        reader = client.dup()
-        reader.settimeout(None)
-        with reader, contextlib.suppress(OSError), reader.makefile("rb") as lines:
+        with contextlib.suppress(OSError, ValueError), client.makefile("rb") as lines:
             for line in lines:
                 command = _command(line)
                 if command is not None:
@@ -143,19 +163,22 @@ class RemoteRun:
         RunError: it can't be reached, or doesn't say what it is about.
     """
 
+    ours = False
+
     def __init__(self, path: Path, tell: Tell) -> None:
         self._tell = tell
         self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+        self._lines = self._socket.makefile("rb")
         try:
             with _short(path) as name:
                 self._socket.connect(name)
-            self._lines = self._socket.makefile("rb")
             hello = json.loads(self._lines.readline())["hello"]
             automaton = program_of(hello["program"]).automaton
             self.world: str = hello["world"]
+            self.robot: str = hello.get("robot", "")
             self.plan: BranchingPlan = plan_of(hello["plan"], automaton)
         except (OSError, ValueError, KeyError, PolarisError) as error:
-            self._socket.close()
+            self._close()
             raise RunError(f"The run that goes on elsewhere can't be reached ({error}).") from error
         self.snapshot = Snapshot(0, automaton, self.plan, "planned")
         self._thread = threading.Thread(target=self._read, name="remote-run", daemon=True)
@@ -177,17 +200,27 @@ class RemoteRun:
 
     def leave(self) -> None:
         """Looks no longer; the run goes on."""
-        with contextlib.suppress(OSError):
-            self._socket.shutdown(socket.SHUT_RDWR)
-        self._socket.close()
+        _end(self._socket)
+        if self._thread.ident is None:
+            self._close()
 
-    def wait(self, seconds: float) -> None:
+    def _close(self) -> None:
+        """Lets the socket go; where the thread reads, that does."""
+        self._socket.close()
+        self._lines.close()
+
+    def wait(self, seconds: float | None) -> None:
         """Waits for its end."""
         self._thread.join(seconds)
 
+    def end(self) -> None:
+        """Looks no longer."""
+        self.leave()
+        self.wait(LAST_WORDS_S)
+
     def _read(self) -> None:
         entries = [Entry("The run's own program has ended; its log may tell more.", "! ", "bad")]
-        with contextlib.suppress(OSError, ValueError), self._lines:
+        with contextlib.suppress(OSError, ValueError), self._socket, self._lines:
             for line in self._lines:
                 value = json.loads(line)
                 if "over" in value:
@@ -197,6 +230,13 @@ class RemoteRun:
                 if event is not None:
                     self._tell(Happened(event))
         self._tell(RunOver(*entries))
+
+
+def _end(part: socket.socket) -> None:
+    """Closes a socket, also where another thread waits for it."""
+    with contextlib.suppress(OSError):
+        part.shutdown(socket.SHUT_RDWR)
+    part.close()
 
 
 def live_runs(folder: Path | None = None) -> list[Path]:

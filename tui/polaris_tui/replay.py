@@ -82,7 +82,8 @@ class Replay:
         if words:
             tests = matcher(words.split())
             return [number for number, _ in filtered(list(self.events), tests)]
-        return [n for n, e in enumerate(self.events, 1) if e.text and e.severity != "debug"]
+        told = (n for n, e in enumerate(self.events, 1) if e.text or isinstance(e, Heard))
+        return [n for n in told if self.events[n - 1].severity != "debug"]
 
     def problem(self, after: int, step: int) -> int | None:
         """The next problem after an event, or with a step of -1 the last one before it."""
@@ -102,6 +103,9 @@ class Replay:
         started = next((n for n, e in reversed(before) if isinstance(e, RunStarted)), 0)
         for kind in BEFORE_A_RUN:
             found.update(_last(before, kind, started or number))
+        # The last words before a run are the yes to it; those that made the program came earlier.
+        for edited in _last(before, Edited, started or number):
+            found.update(_last(before, Heard, edited))
         decided = max(_last(before, TransitionTaken, number), default=0)
         if isinstance(self.events[number - 1], TransitionTaken):
             decided = number

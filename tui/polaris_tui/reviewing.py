@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from polaris_nl.execution.events import Event, Observed, Planned
+from polaris_nl.execution.events import Event, Heard, Observed, Planned, RunStarted
 from polaris_nl.model.formula import Literal, parse_formula
 from polaris_nl.model.text import listed, sentence
 from polaris_nl.render.layout import Row, cut, wrapped
@@ -48,15 +48,19 @@ def _event(reading: Reading, number: int, scene: Scene, width: int) -> list[Row]
 
 
 def start(reading: Reading) -> float:
-    """The time of the first event."""
+    """The time that others count from: the run's begin, what was said for it comes before; else the first."""
     events = reading.replay.events
-    return events[0].time if events else 0.0
+    begun = next((e for e in events if isinstance(e, RunStarted)), None)
+    return begun.time if begun is not None else events[0].time if events else 0.0
 
 
 def text_of(event: Event, scene: Scene) -> str:
     """What an event says; what it is where it says nothing."""
     if event.text:
         return event.text
+    if isinstance(event, Heard):
+        way = "Heard" if event.source == "voice" else "Typed"
+        return f"{way}: {event.utterance}"
     if isinstance(event, Planned):
         return f"The plan is {event.status}."
     if isinstance(event, Observed):

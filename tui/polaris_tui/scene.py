@@ -12,8 +12,9 @@ from polaris_nl.model.world import World
 from polaris_nl.render.glyphs import Glyphs
 from polaris_nl.render.timeline import Stop, branch_stops
 from polaris_nl.snapshot import Snapshot
-from polaris_tui.actions import Keymap, Situation
+from polaris_tui.actions import Keymap
 from polaris_tui.progress import RUNS, Progress
+from polaris_tui.reasons import Situation
 from polaris_tui.stepping import Steps
 
 if TYPE_CHECKING:
@@ -55,6 +56,9 @@ class Scene:
         reading: the place in a log, or None.
         picked: the checkpoint that is picked.
         stepping: the map is of the step that is picked.
+        attached: the run was begun in another terminal.
+        voice: whether the microphone is open, and what was heard last, in a few words.
+        robot: what the run that is shown moves, or the next one; "" in the simulated world.
         slow: the plan has been in the making for so long that the screen says so.
     """
 
@@ -75,6 +79,9 @@ class Scene:
     reading: Reading | None = None
     slow: bool = False
     stepping: bool = False
+    attached: bool = False
+    robot: str = ""
+    voice: str = ""
 
     @property
     def running(self) -> bool:

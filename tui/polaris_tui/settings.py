@@ -138,7 +138,7 @@ def _keys(value: object) -> Mapping[str, tuple[str, ...]]:
             raise FormatError(f"There is no action {id}.{did_you_mean(id, BY_ID)}")
         if not isinstance(keys, str):
             raise FormatError(f'The keys of {id} are a text, such as "f7 u".')
-        found[id] = tuple(keys.split())
+        found[id] = tuple("ctrl+@" if key == "ctrl+space" else key for key in keys.split())
     if found.get("stop") == ():
         raise FormatError("stop has to have a key.")
     return found

@@ -6,31 +6,51 @@ import contextlib
 import os
 import signal
 import sys
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from polaris_nl.execution.ros.profile import Profile
 from polaris_nl.model.errors import PolarisError
 from polaris_nl.session import Session
-from polaris_tui.keeping import keeping_path, leftovers, tidied
+from polaris_tui.keeping import keeping_path, leftovers, state_folder, tidied
+from polaris_tui.lines import Places
 from polaris_tui.messages import HungUp
 from polaris_tui.remote import live_runs, runs_folder
-from polaris_tui.running import Running
 from polaris_tui.settings import Settings, read_settings, settings_path
+from polaris_tui.talking import Talking
+from polaris_tui.terminal import alone_on_the_terminal
 
 if TYPE_CHECKING:
+    from polaris_nl.speech.modes import Mode
+    from polaris_nl.speech.sources import Source
     from polaris_tui.app import PolarisApp
 
 SWITCH_S = 0.001
 """How long planning may keep the interpreter from a key that was pressed; Python's own is five times that."""
 
+MESSAGES = "messages.txt"
+"""What libraries write to the error output meanwhile, in the state folder."""
 
-def start(session: Session, *, log: Path | None = None, plain: bool = False) -> int:
+
+def start(
+    session: Session,
+    *,
+    log: Path | None = None,
+    plain: bool = False,
+    profile: Profile | None = None,
+    mic: Source | None = None,
+    mode: Mode = "talk",
+) -> int:
     """Runs the application until the user quits; returns the exit code.
 
     Args:
         session: program, language and planner; it belongs to the caller.
         log: a log to be opened at once.
         plain: line by line instead of on the whole screen.
+        profile: the robot that runs move; None for the simulated world.
+        mic: where speech comes from; None for this machine's microphone, once it is asked for.
+        mode: when speech is meant for the robot.
 
     Raises:
         FormatError: the settings aren't as they should be.
@@ -44,21 +64,25 @@ def start(session: Session, *, log: Path | None = None, plain: bool = False) -> 
     left = leftovers(session.world.name)
     try:
         if plain:
-            return _lines(session, settings, log)
+            places = Places(tuple(left), tuple(_of_world(session.world.name)), runs_folder())
+            return _lines(session, settings, log, profile, places)
         from polaris_tui.app import PolarisApp
 
-        app = PolarisApp(
-            session,
-            settings,
-            logs=settings.logs_folder,
-            kept=kept and kept_at is not None,
-            leftovers=left,
-            log=log,
-            listens_at=runs_folder(),
-            elsewhere=_of_world(session.world.name),
-            settings_file=str(settings_path()),
-        )
-        code = _on_the_screen(app, settings.mouse)
+        with alone_on_the_terminal(state_folder() / MESSAGES):
+            app = PolarisApp(
+                session,
+                settings,
+                logs=settings.logs_folder,
+                kept=kept and kept_at is not None,
+                leftovers=left,
+                log=log,
+                listens_at=runs_folder(),
+                profile=profile,
+                talk=partial(Talking, mic, mode),
+                elsewhere=_of_world(session.world.name),
+                settings_file=str(settings_path()),
+            )
+            code = _on_the_screen(app, settings.mouse)
     finally:
         if kept and kept_at is not None and tidied(kept_at) and session.path == kept_at:
             sys.stdout.write(f"The program is kept. Go on with: polaris-nl tui {kept_at}\n")
@@ -95,7 +119,7 @@ def _on_the_screen(app: PolarisApp, mouse: bool) -> int | None:
             raise
     if app.state.hung_up:
         _let_go()
-        if isinstance(app.state.current, Running):
+        if app.state.current is not None and app.state.current.ours:
             app.state.current.wait(None)
     return code
 
@@ -103,12 +127,19 @@ def _on_the_screen(app: PolarisApp, mouse: bool) -> int | None:
 def _let_go() -> None:
     """Takes nothing from the terminal that is gone, and gives it nothing: both would fail."""
     nothing = os.open(os.devnull, os.O_RDWR)
-    for stream in (0, 1, 2):
+    screen = sys.__stderr__.fileno() if sys.__stderr__ is not None else 2
+    for stream in (0, 1, 2, screen):
         os.dup2(nothing, stream)
     os.close(nothing)
 
 
-def _lines(session: Session, settings: Settings, log: Path | None) -> int:
+def _lines(
+    session: Session,
+    settings: Settings,
+    log: Path | None,
+    profile: Profile | None,
+    places: Places,
+) -> int:
     """The line mode."""
     from polaris_nl.commands.common import width
     from polaris_nl.model.wording import PlainWording
@@ -126,8 +157,20 @@ def _lines(session: Session, settings: Settings, log: Path | None) -> int:
         settings.keymap,
     )
     talk = Plain(
-        session, lambda line: print(line, flush=True), scene, width(), logs=settings.logs_folder
+        session,
+        lambda line: print(line, flush=True),
+        scene,
+        width(),
+        logs=settings.logs_folder,
+        profile=profile,
+        places=places,
     )
+
+    def hung_up(*_: object) -> None:
+        talk.hung_up = True
+        _let_go()  # Then there are no more lines to be read.
+
+    signal.signal(signal.SIGHUP, hung_up)
     if log is not None:
         talk.open_log(log)
     talk.work(typed_lines())

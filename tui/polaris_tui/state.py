@@ -3,24 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 from polaris_nl.automaton.automaton import START
 from polaris_nl.model.wording import Wording
 from polaris_nl.planning.result import BranchingPlan
 from polaris_nl.render.glyphs import Glyphs
 from polaris_nl.snapshot import Snapshot
-from polaris_tui.actions import View
 from polaris_tui.choosing import Choosing
 from polaris_tui.progress import Progress
-from polaris_tui.running import Running
+from polaris_tui.reasons import View
+from polaris_tui.running import Run
 from polaris_tui.scene import Reading
 from polaris_tui.stepping import Steps
 from polaris_tui.styles import Look
 from polaris_tui.transcript import Entry, Exchange, Transcript
-
-if TYPE_CHECKING:
-    from polaris_tui.remote import RemoteRun
 
 
 @dataclass
@@ -36,6 +32,10 @@ class State:
         purposes: why actions are there, by revision and number.
         current: the run that goes on.
         ran: the program and plan of the last run.
+        robot: what runs move, such as "the simulated Stretch"; "" in the simulated world, where nothing does.
+        ran_on: what the run that goes on, or the last one, moves.
+        voice: whether the microphone is open, and what was heard last, in a few words.
+        attached: the run that goes on, or the last one, was begun in another terminal.
         awaited_plan: the plan that the last answer was about.
         awaited: ticket, revision and older plan of an answer whose plan's news are to come.
         stopped_at: the ticket of the last thing said before a stop.
@@ -61,8 +61,12 @@ class State:
     reading: Reading | None = None
     read_wording: Wording | None = None
     choosing: Choosing = Choosing()
-    current: Running | RemoteRun | None = None
+    current: Run | None = None
     ran: Snapshot | None = None
+    robot: str = ""
+    ran_on: str = ""
+    voice: str = ""
+    attached: bool = False
     awaited_plan: BranchingPlan | None = None
     awaited: tuple[int, int, BranchingPlan | None] | None = None
     stopped_at: int = 0

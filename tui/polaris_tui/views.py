@@ -11,8 +11,9 @@ from polaris_nl.render.glyphs import Glyphs, cells, plain
 from polaris_nl.render.layout import Row, Tone, cut, wrapped
 from polaris_nl.render.program import program_rows
 from polaris_nl.render.tree import tree_of
-from polaris_tui.actions import View, footer
+from polaris_tui.footer import footer
 from polaris_tui.panels import map_rows, plan_rows, run_rows
+from polaris_tui.reasons import View
 from polaris_tui.reviewing import review_heading, review_rows
 from polaris_tui.scene import Scene
 
@@ -40,7 +41,7 @@ def heading(view: View, scene: Scene) -> str:
         case "plan":
             return f"Plan, step by step{_making(scene)}"
         case "run":
-            return "Run" if running or scene.progress.started is None else "Run, as it ended"
+            return run_heading(scene)
         case "map":
             if scene.reading is not None:
                 return f"Map, after event {scene.reading.number}"
@@ -54,6 +55,13 @@ def heading(view: View, scene: Scene) -> str:
         case "help":
             return f"Help ({_paging(scene)})"
     return "Answers"
+
+
+def run_heading(scene: Scene) -> str:
+    """What stands above a run: whose it is stays to be read, however much is answered meanwhile."""
+    ended = not scene.running and scene.progress.started is not None
+    robot = f" on {plain(scene.robot)}" if scene.robot else ""
+    return f"Run{robot}" + ", begun in another terminal" * scene.attached + ", as it ended" * ended
 
 
 def _paging(scene: Scene) -> str:
@@ -189,6 +197,8 @@ def title_row(scene: Scene, width: int) -> Row:
     left = f"Polaris NL  {plain(scene.world.name)}  {plain(scene.file)}"
     if scene.snapshot.revision:
         left += f"  r{scene.snapshot.revision}"
+    if scene.robot and not scene.reading:
+        left += f"  robot: {plain(scene.robot)}"
     undoable = scene.snapshot.undoable
     key = scene.keymap.first("undo")
     right = f"{key} undoes: {plain(undoable[-1])}" if undoable and not scene.reading else ""
@@ -198,6 +208,9 @@ def title_row(scene: Scene, width: int) -> Row:
 def status_row(scene: Scene, width: int, place: str) -> Row:
     """How program and plan are, by sign and word, and the first keys to know."""
     text, tone = status(scene)
+    if scene.voice:
+        heard = cut(plain(scene.voice), max(width // 3, 12), scene.glyphs.more)
+        text = f"{text}  ({heard})"
     shown = footer(place, scene.keymap, scene.now, width - cells(text) - 2)
     return Row(_apart(text, shown, width, scene.glyphs), tone)
 
@@ -208,7 +221,7 @@ def status(scene: Scene) -> tuple[str, Tone]:
         return _read(scene)
     glyphs, snapshot, activity = scene.glyphs, scene.snapshot, scene.progress.activity
     if activity:
-        sign = glyphs.open if activity in ("loading", "stopping", "waiting") else ">"
+        sign = glyphs.open if activity in ("loading", "connecting", "stopping", "waiting") else ">"
         return f"{sign} {activity}", "strong"
     if snapshot.planning == "failed":
         return f"{glyphs.bad} planning failed", "bad"
