@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 
 import pytest
@@ -114,23 +114,27 @@ def test_what_grows_stale_is_reported_once(serve: Case) -> None:
     assert [set(e.stale) for e in stale] == [set(map(str, serve.world.facts))]
 
 
+def lines(events: Sequence[Event]) -> list[str]:
+    return [line for line, _ in story(events)]
+
+
 def test_the_same_seed_gives_the_same_story(lunch: Case) -> None:
     faults = [Fault(2.0, "fail"), Fault(15.0, "blind", seconds=3.0)]
     first, second = carry_out(lunch, *faults, seed=7), carry_out(lunch, *faults, seed=7)
-    assert story(first.events) == story(second.events)
+    assert lines(first.events) == lines(second.events)
     assert first.events == second.events
     assert first.result == second.result
 
 
 def test_another_seed_gives_people_other_times(lunch: Case) -> None:
     first, second = carry_out(lunch, seed=7), carry_out(lunch, seed=8)
-    assert story(first.events) == story(second.events)
+    assert lines(first.events) == lines(second.events)
     assert [e.time for e in first.of(PersonActed)] != [e.time for e in second.of(PersonActed)]
 
 
 def test_the_story_tells_goals_transitions_and_the_end(serve: Case) -> None:
     told = carry_out(serve)
-    assert story(told.events) == [
+    assert lines(told.events) == [
         "transition c0 to c1",
         *(f"goal {action}" for action in told.robot.sent),
         "checkpoint fetched",
