@@ -92,7 +92,9 @@ class Hasty:
     PortAudioError = OSError
 
     @contextmanager
-    def RawInputStream(self, callback: Callable[..., None], **_: object) -> Iterator[None]:
+    def RawInputStream(  # noqa: N802 - the library's name
+        self, callback: Callable[..., None], **_: object
+    ) -> Iterator[None]:
         for number in range(3):
             status = SimpleNamespace(input_overflow=number == 1)
             callback(bytes([number]), 1, None, status)
