@@ -294,8 +294,7 @@ SCENARIOS = (
              _at(Cue(Deviated, delay_s=5.0), _fault("event", "(at cup countertop)", "(at plate countertop)")),
              "halted", "the cup is on the countertop", settings={"grace_s": 4.0}),
     # 9: perception
-    Scenario("nothing seen for a while", "serve", _at(MOVING, _fault("blind", seconds=6.0)), "done",
-             settings={"grace_s": 16.0}),  # A busy machine's eyes open late.
+    Scenario("nothing seen for a while", "serve", _at(MOVING, _fault("blind", seconds=6.0)), "done"),
     Scenario("nothing seen any more", "serve", _at(MOVING, _fault("blind")), "halted",
              settings={"goal_s": 15.0, "grace_s": 4.0}),
     Scenario("what is waited for flickers", "lunch",
