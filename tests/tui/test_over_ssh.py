@@ -170,7 +170,7 @@ def test_the_tidying_program_by_sentences_alone(terminal: Tmux, sshd: Sshd, tmp_
     terminal.choose("1", "Log ")
     terminal.type(":chain")
     terminal.see("What led to event")
-    terminal.type(":quit")
+    terminal.type("quit")
     terminal.see("code 0")
 
 
@@ -269,7 +269,7 @@ def test_the_caregiving_program_by_sentences_alone(
     terminal.see("Only events with these words")
     terminal.type("topic=transition")
     terminal.see("only: topic=transition", ": on to ")
-    terminal.type(":quit")
+    terminal.type("quit")
     terminal.see("code 0")
 
 

@@ -150,3 +150,30 @@ def test_a_log_without_its_world_is_read_with_this_one(tmp_path: Path, care_home
         writer.write(RunStarted(time=1.0, robot="world"))
     with pytest.raises(LogError, match=r"The program in .*bad\.mcap can't be read"):
         open_replay(tmp_path / "bad.mcap", care_home)
+
+
+def test_letters_in_a_log_change_no_program(play: Play, log: Path) -> None:
+    async def script(stage: Stage) -> None:
+        await stage.say("Open the fridge.")
+        program = stage.session.snapshot.automaton
+        stage.app.open_log(log)
+        await stage.see("> Log lunch.mcap")
+        await stage.press("u", "a", "d")  # Not "U", too: it would hide an undo.
+        await stage.say("what will you do?")  # Answered after all that was asked for before.
+        assert stage.session.snapshot.automaton == program
+
+    play(script)
+
+
+def test_a_log_asked_for_by_a_sentence_leaves_the_input_line_the_focus(
+    play: Play, log: Path
+) -> None:
+    async def script(stage: Stage) -> None:
+        stage.app.logs = log.parent
+        await stage.enter(":log")
+        await stage.see("Which log?")
+        await stage.press(*"lunch", "enter")
+        await stage.see("Log lunch.mcap")
+        assert stage.prompt.has_focus
+
+    play(script)

@@ -215,7 +215,8 @@ class PolarisApp(Keyed):
         self.state.read_wording = remembered(message.wording)
         self.state.view = "review"
         self.draw()
-        self.screen.set_focus(self.board.main)
+        if not self.board.prompt.has_focus:  # Who writes sentences goes on doing so.
+            self.screen.set_focus(self.board.main)
         self.board.main.reset()
 
     def on_happened(self, message: told.Happened) -> None:

@@ -130,7 +130,7 @@ class Going(Doing):
 
     def _log(self, about: str) -> None:
         if about:
-            self._app.open_log(Path(about).expanduser())
+            self._app.open_log(Path(about).expanduser(), go_there=False)
             return
         self.follow(offering.log_menu(self._app.logs))
 

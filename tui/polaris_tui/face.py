@@ -61,8 +61,10 @@ class Face(BaseApp):
         self.state.kept = False
         self._conversation.save_as(path, self.state.note(said=f"save as {path.name}"))
 
-    def open_log(self, path: Path) -> None:
-        """Opens a log."""
+    def open_log(self, path: Path, go_there: bool = True) -> None:
+        """Opens a log; `go_there`: the focus goes there, even if sentences are being written."""
+        if go_there:
+            self.screen.set_focus(self.board.main)
         self._conversation.open_log(path, self.state.note(said=f"log {path.name}"))
 
     def talk(self) -> None:

@@ -158,8 +158,8 @@ class Screen(Protocol):
         """Gives the program's file another name."""
         ...
 
-    def open_log(self, path: Path) -> None:
-        """Opens a log."""
+    def open_log(self, path: Path, go_there: bool = True) -> None:
+        """Opens a log; `go_there`: the focus goes there, even if sentences are being written."""
         ...
 
     def talk(self) -> None:
