@@ -7,6 +7,7 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from pathlib import Path
 from threading import Barrier
 from typing import Any
@@ -58,7 +59,8 @@ def children() -> list[str]:
     """The processes that this one has started and not collected."""
     found = []
     for task in Path("/proc/self/task").iterdir():
-        found += (task / "children").read_text(encoding="ascii").split()
+        with suppress(FileNotFoundError):  # A thread may end between being listed and being asked.
+            found += (task / "children").read_text(encoding="ascii").split()
     return found
 
 

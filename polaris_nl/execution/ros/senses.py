@@ -11,12 +11,13 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
+from polaris_nl.execution.beliefs import AHEAD_S
 from polaris_nl.execution.clock import Clock
 from polaris_nl.execution.ros.frames import MAP, Frames, Transform
 from polaris_nl.execution.ros.layout import Layout, Pose
 from polaris_nl.execution.ros.perception import Detected, Percepts, Seen
 from polaris_nl.execution.ros.profile import Profile
-from polaris_nl.execution.ros.watch import Vitals
+from polaris_nl.execution.ros.watch import CLOCK_JUMP_S, Vitals
 from polaris_nl.model.errors import FormatError
 from polaris_nl.model.formula import Literal, parse_literal
 from polaris_nl.model.world import World
@@ -140,21 +141,35 @@ class Intake:
     def _now(self) -> float:
         return self._clock.now()
 
+    def _tell_time(self, apart: float) -> float:
+        """Takes in how far the clocks are apart by one message; returns the drift, in seconds.
+
+        What a message takes on its way makes them look further apart than they are, so the fastest one
+        is nearest to the truth. Were the first one believed, and late, all that is seen after it would
+        lie in the future, and the robot would be blind. A jump isn't followed: it is for the watchdog.
+        """
+        if self._offset is None or 0.0 < self._offset - apart <= CLOCK_JUMP_S:
+            self._offset = apart
+        return self._offset - apart
+
     def _stamped(self, stamp: Any) -> float:
         """A message's time by the run's clock; now for one that has none."""
         seconds = stamp.sec + stamp.nanosec * 1e-9
         if seconds == 0 or self._offset is None:
             return self._now()
-        return float(seconds + self._offset)
+        return self._seen_at(seconds)
+
+    def _seen_at(self, seconds: float) -> float:
+        """A time of the robot's clock by ours; what is a little ahead came faster, and is of now."""
+        at, now = seconds + (self._offset or 0.0), self._now()
+        return now if 0.0 < at - now <= AHEAD_S else at
 
     def _joint_states(self, message: Any) -> None:
         now = self._now()
         seconds = message.header.stamp.sec + message.header.stamp.nanosec * 1e-9
         drift = 0.0
         if seconds:
-            if self._offset is None:
-                self._offset = now - seconds
-            drift = seconds + self._offset - now
+            drift = self._tell_time(now - seconds)
         self.vitals = replace(self.vitals, heartbeat=now, drift=drift)
         self.joints = dict(zip(message.name, message.position, strict=False))
 
@@ -269,7 +284,7 @@ class Intake:
 
     def _seconds(self, stamp: object, otherwise: float | None = None) -> float:
         if isinstance(stamp, int | float) and stamp > 0 and self._offset is not None:
-            return float(stamp) + self._offset
+            return self._seen_at(float(stamp))
         return self._now() if otherwise is None else otherwise
 
 
