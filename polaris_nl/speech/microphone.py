@@ -85,9 +85,11 @@ class Microphone:
             except queue.Full:
                 lost[0] += 1
 
-        with library.RawInputStream(
+        stream = library.RawInputStream(
             samplerate=RATE, blocksize=BLOCK, channels=1, dtype="int16", device=self._device, callback=keep
-        ):  # fmt: skip
+        )  # fmt: skip
+        try:
+            stream.start()
             patience = FIRST_S
             while True:
                 try:
@@ -101,6 +103,10 @@ class Microphone:
                         "Some sound was lost: this machine is too busy. Say it again.", over=True
                     )
                 yield block
+        finally:
+            # To stop it would wait for the device to end its last block, and one that is gone never does.
+            stream.abort()
+            stream.close()
 
 
 def microphones() -> list[str]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import itertools
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -91,14 +90,20 @@ class Hasty:
 
     PortAudioError = OSError
 
-    @contextmanager
-    def RawInputStream(  # noqa: N802 - the library's name
-        self, callback: Callable[..., None], **_: object
-    ) -> Iterator[None]:
-        for number in range(3):
-            status = SimpleNamespace(input_overflow=number == 1)
-            callback(bytes([number]), 1, None, status)
-        yield
+    class RawInputStream:
+        def __init__(self, callback: Callable[..., None], **_: object) -> None:
+            self._callback = callback
+
+        def start(self) -> None:
+            for number in range(3):
+                status = SimpleNamespace(input_overflow=number == 1)
+                self._callback(bytes([number]), 1, None, status)
+
+        def abort(self) -> None:
+            pass
+
+        def close(self) -> None:
+            pass
 
 
 def test_lost_sound_is_said(monkeypatch: pytest.MonkeyPatch) -> None:

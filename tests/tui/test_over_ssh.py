@@ -276,9 +276,10 @@ def test_the_caregiving_program_by_sentences_alone(
 def test_kill_loses_no_edit(terminal: Tmux, sshd: Sshd, tmp_path: Path) -> None:
     terminal.start(sshd.command("tui", "--world", "care-home"))
     terminal.see("empty program", "(no name)")
-    for sentence in ("open the fridge", "go to the hall"):
+    for sentence, checkpoint in (("open the fridge", "opened"), ("go to the hall", "hall")):
         terminal.type(sentence)
-        terminal.see(f"> {sentence}", "The plan takes")
+        # An edit that is shown is kept; a sentence that is only echoed may still be read.
+        terminal.see(f"> {sentence}", f"{checkpoint}: {sentence}", "The plan takes")
     (kept,) = (sshd.state / "polaris-nl" / "unsaved").glob("*.polaris.json")
     os.kill(int(re.findall(r"-(\d+)\.", kept.name)[0]), signal.SIGKILL)
     terminal.see("code ")
