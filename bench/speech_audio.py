@@ -24,6 +24,8 @@ PARTS = {
     "set aside": ("aside.yaml", "foreign_aside.txt"),
 }
 """The set's parts, with what is said to the robot and what isn't: settings were chosen by the first."""
+BABBLED = 83
+"""The babble is of the first part's foreign lines that were there at first, so that it stays the same."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,7 +115,7 @@ def _kitchen(length: int, random: numpy.random.Generator) -> Any:
 
 def _babble(length: int, random: numpy.random.Generator) -> Any:
     """Six people talking about something else."""
-    said = [s.text for s in foreign(next(iter(PARTS)))]
+    said = [s.text for s in foreign(next(iter(PARTS)))[:BABBLED]]
     total = numpy.zeros(length, dtype="float64")
     for _ in range(6):
         own = numpy.zeros(0, dtype="float32")
