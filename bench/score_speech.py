@@ -106,10 +106,10 @@ def _context(world: str, after: tuple[str, ...]) -> Remembered:
 def _pieces(world: str, search: str, sounds: Sequence[bytes], second: bool) -> list[Spoken]:
     found = []
     for sound in sounds:
-        texts = _decodings(world, search).hear(sound)
-        free = _decodings("", "narrow").hear(sound) if second else ()
-        if texts:
-            found.append(Spoken(texts, sound, free[0] if free else ""))
+        phrased = _decodings(world, search).hear(sound)
+        free = _decodings("", "narrow").hear(sound) if second else None
+        if phrased.texts:
+            found.append(Spoken.of(phrased, free, sound))
     return found
 
 

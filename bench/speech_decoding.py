@@ -9,7 +9,7 @@ from pathlib import Path
 
 from bench.speech_audio import FOLDER, blocks
 from polaris_nl.speech.activity import Activity, Cutter
-from polaris_nl.speech.recogniser import Decoder
+from polaris_nl.speech.recogniser import Decoded, Decoder
 
 
 class Decodings:
@@ -21,23 +21,23 @@ class Decodings:
     """
 
     def __init__(self, settings: Sequence[object], make: Callable[[], Decoder]) -> None:
-        key = hashlib.sha256(repr(settings).encode()).hexdigest()[:16]
+        key = hashlib.sha256(repr(("likelihoods", *settings)).encode()).hexdigest()[:16]
         self._path = FOLDER / "decodings" / f"{key}.jsonl"
         self._path.parent.mkdir(parents=True, exist_ok=True)
         self._make = make
         self._decoder: Decoder | None = None
         self._known = dict(_lines(self._path))
 
-    def hear(self, audio: bytes) -> tuple[str, ...]:
+    def hear(self, audio: bytes) -> Decoded:
         """What one piece of speech may have been."""
         name = hashlib.sha256(audio).hexdigest()[:24]
         if name not in self._known:
             self._decoder = self._decoder or self._make()
             for block in blocks(audio):
                 self._decoder.feed(block)
-            self._known[name] = self._decoder.finish()
+            found = self._known[name] = self._decoder.finish()
             with self._path.open("a", encoding="utf-8") as file:
-                file.write(json.dumps([name, self._known[name]]) + "\n")
+                file.write(json.dumps([name, found.texts, found.likelihoods]) + "\n")
         return self._known[name]
 
 
@@ -54,8 +54,9 @@ def cut(audio: bytes, activity: Activity) -> list[bytes]:
     return [bytes(piece) for piece in found]
 
 
-def _lines(path: Path) -> list[tuple[str, tuple[str, ...]]]:
+def _lines(path: Path) -> list[tuple[str, Decoded]]:
     if not path.exists():
         return []
     lines = path.read_text(encoding="utf-8").splitlines()
-    return [(name, tuple(texts)) for name, texts in map(json.loads, lines)]
+    found = map(json.loads, lines)
+    return [(name, Decoded(tuple(texts), tuple(values))) for name, texts, values in found]

@@ -21,6 +21,7 @@ _LEADS = (
 _NONE = (
     "none", "none of them", "none of these", "no", "neither", "nope", "never mind", "cancel", "forget it",
 )  # fmt: skip
+_YES = ("yes", "yeah", "yep", "yes please", "yes i did", "right", "that's right", "that's it")
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +37,8 @@ class Choices:
     @property
     def say(self) -> str:
         """The question."""
+        if len(self.sentences) == 1:
+            return f"Did you mean: {self.sentences[0]}? Say yes or no."
         told = "; ".join(f"{n}: {s}" for n, s in zip(NUMBERS, self.sentences, strict=False))
         return f"I didn't get that. Did you mean {told}? Say the number, or none."
 
@@ -43,6 +46,8 @@ class Choices:
         """The sentence that an answer means, "" for none of them, or None where it is no answer."""
         if text in _NONE:
             return ""
+        if len(self.sentences) == 1 and text in _YES:
+            return self.sentences[0]
         for number, sentence in enumerate(self.sentences):
             if text in _answers(number):
                 return sentence

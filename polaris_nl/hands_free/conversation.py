@@ -154,11 +154,16 @@ class Conversation:
         self, said: Utterance, heard: HeardEvent, near: Callable[[], Sequence[str]]
     ) -> Reply:
         self._failures += 1
-        if self._failures >= FAILURES:
-            self._choices = choices_among(near(), ("help", "read me the program"))
-            if self._choices is not None:
-                self._sink(heard)
-                return self._reply(said, self._choices.say)
+        choices = None
+        if self.session.understood(said.text).outcome != "refused":
+            # It makes sense, but too little speaks for it: it is asked about, and not done.
+            choices = choices_among((said.text,), ())
+        elif self._failures >= FAILURES:
+            choices = choices_among(near(), ("help", "read me the program"))
+        if choices is not None:
+            self._choices = choices
+            self._sink(heard)
+            return self._reply(said, choices.say)
         answer = self.session.say(said.text, source="voice", heard=heard)
         self._tell(answer.say)
         return Reply(said, answer.say, answer)

@@ -11,13 +11,16 @@ _CHANGING = ("undo", "redo", "save")
 
 
 def weight_of(meant: Interpretation, awaits_yes: bool = False) -> Weight | None:
-    """The weight of an interpretation, or None for a refusal.
+    """The weight of an interpretation; None for a refusal, and for what is understood only in part.
+
+    Words of which some ask for nothing are typed on purpose ("the cup, put it there"); heard, they are mostly
+    misheard ("silver tray and put it there"), and what was asked for in them would be lost.
 
     Args:
         meant: what was understood.
         awaits_yes: a yes would start a run.
     """
-    if meant.outcome == "refused":
+    if meant.outcome == "refused" or meant.aside:
         return None
     if meant.outcome == "question":
         return Weight.ASKING

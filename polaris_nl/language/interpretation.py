@@ -108,6 +108,8 @@ class Interpretation:
         edits: the change to the program, for `applied` (and for `question` where the clear part is
             kept).
         say: what to answer, one sentence or two; for a query the session says the answer.
+        aside: words of it that ask for nothing themselves: a remark, or a thing that is only named, to be
+            spoken of.
         partial: the clear part of the utterance is applied although a question is open.
         agrees: a command that says yes, too: "yes, run it".
         readings: all readings, the winner first.
@@ -121,6 +123,7 @@ class Interpretation:
     question: Question | None = None
     refusal: Refusal | None = None
     query: Query | None = None
+    aside: tuple[str, ...] = ()
     partial: bool = False
     agrees: bool = False
     readings: tuple[Reading, ...] = field(default=(), repr=False)

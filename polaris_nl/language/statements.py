@@ -144,7 +144,8 @@ class Statements:
                 scope=scope,
             )
             say = steps_in_words(steps, self._language.wording)
-            meant = Interpretation(utterance, "applied", say, tuple(builder.edits))
+            aside = tuple(i.text for i in cut.items if i.role in ("topic", "fact"))
+            meant = Interpretation(utterance, "applied", say, tuple(builder.edits), aside=aside)
             yield _Tried(cut, cut.cost, say, meant, after)
 
     def _steps(self, cut: Cut, builder: Builder, dialogue: Dialogue) -> tuple[list[Step], Scope]:

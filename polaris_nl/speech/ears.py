@@ -54,12 +54,11 @@ class Ears:
     def piece(self, audio: bytes, weigh: Weigh) -> Utterance:
         """What one piece of speech says, that was cut out before."""
         self.phrased.feed(audio)
-        texts = self.phrased.finish()
-        free: tuple[str, ...] = ()
+        phrased, free = self.phrased.finish(), None
         if self.free is not None:
             self.free.feed(audio)
             free = self.free.finish()
-        found = [Spoken(texts, audio, free[0] if free else "")] if texts else []
+        found = [Spoken.of(phrased, free, audio)] if phrased.texts else []
         return utterance(found, weigh, self.ways)
 
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from polaris_nl.speech.activity import BEFORE_S, LONGEST_S, PAUSE_S, Cutter
 from polaris_nl.speech.audio import RATE
 from polaris_nl.speech.ears import Ears
-from polaris_nl.speech.recogniser import UNKNOWN, Spoken
+from polaris_nl.speech.recogniser import UNKNOWN, Decoded, Spoken
 from polaris_nl.speech.weight import Weigh, Weight
 
 QUICK = {"stop": "stop", "pause": "pause"}
@@ -174,15 +174,17 @@ class Hearer:
         ended = self._clock()
         audio, quick, called = bytes(self._audio), self._acted, self._called
         self._ears.quick.finish()
-        texts = self._ears.phrased.finish() if self._attentive else ()
-        free = self._ears.free.finish() if self._attentive and self._ears.free is not None else ()
+        phrased = self._ears.phrased.finish() if self._attentive else Decoded()
+        second = self._ears.free if self._attentive else None
+        free = second.finish() if second is not None else None
         self._called = False
         self._cutter.end()
         self._begin()
         if called:
-            texts = tuple(dict.fromkeys(t.removeprefix(UNKNOWN).strip() for t in texts))
-        if texts or quick:
-            spoken = Spoken(texts or (quick,), audio, free[0] if free else "")
+            texts = tuple(t.removeprefix(UNKNOWN).strip() for t in phrased.texts)
+            phrased = Decoded(texts, phrased.likelihoods)
+        if phrased.texts or quick:
+            spoken = Spoken.of(phrased if phrased.texts else Decoded((quick,)), free, audio)
             yield Heard(spoken, quick, pause_s, ended, self._clock() - ended)
 
     def _drop(self) -> None:

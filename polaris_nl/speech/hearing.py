@@ -3,6 +3,10 @@
 Vosk with phrases turns any speech into phrases. So every reading is parsed strictly, and the same
 audio is decoded freely: where the two differ too much, the words were not meant for the robot. The
 more a mistake would cost, the better the two must agree.
+
+With noise, the free decoding is the first to go astray. So the two are compared by likelihood, too, as
+in utterance verification with a filler model: phrases that explain the sound better than any words
+could are right whatever was heard freely, and those that explain it far worse are other people's talk.
 """
 
 from __future__ import annotations
@@ -27,6 +31,11 @@ LONG, LONG_HARMLESS = 5, 0.2
 FOREIGN_WORDS, FEW_DIFFERENT = 2, 0.25
 """So many words that mean nothing here, and sound like none of those heard, are other people's talk, unless
 the two decodings differ by no more than this."""
+SURE, UNLIKELY, UNLIKELY_HARMLESS = -0.5, -3.5, -2.5
+"""The gain in log-likelihood a word from which phrases are believed whatever was heard freely, and that below
+which they aren't; a question, which other people's talk most often passes for, must gain more."""
+UNHEARD = 8.0
+"""By how much less a reading gains that none of the alternatives is."""
 NEAR = 0.2
 """How far from the likeliest reading the free decoding may be to be one itself, where others make sense."""
 LOOKED_AT, TRIED = 4, 16
@@ -51,6 +60,8 @@ class Utterance:
         audio_s: seconds of audio.
         free: what a recogniser that expects nothing in particular heard.
         different: how far the two are apart, from 0 to 1.
+        gain: by how much the words explain the sound better than those heard freely, as a difference of
+            log-likelihoods a word; None where that isn't known.
         repaired: the words before they were mended, or "".
         why_not: why it isn't accepted, for the log; or "".
     """
@@ -61,6 +72,7 @@ class Utterance:
     audio_s: float = 0.0
     free: str = ""
     different: float = 0.0
+    gain: float | None = None
     repaired: str = ""
     why_not: str = ""
 
@@ -88,15 +100,19 @@ def utterance(pieces: Sequence[Spoken], weigh: Weigh, ways: Ways = Ways()) -> Ut
     """
     chosen: list[str] = []
     repaired = ""
+    gains: list[float | None] = []
     for piece in pieces:
         found = _best(chosen, piece, weigh, ways)
         repaired = repaired or (piece.alternatives[0] if found and found.repaired else "")
         heard = ways.alikes.put_back(piece.alternatives[0])[-1]
+        gains.append(_gain(piece, found.reading if found else heard, ways.alikes))
         chosen = found.pieces if found else [*chosen, heard]
     text = BREAK.join(chosen)
     free = " ".join(piece.free for piece in pieces if piece.free)
     different = difference(text, free)
-    why_not = _why_not(text, free, different, weigh, ways)
+    known = [gain for gain in gains if gain is not None]
+    gain = sum(known) / len(text.split()) if text and len(known) == len(pieces) else None
+    why_not = _why_not(text, free, different, gain, weigh, ways)
     return Utterance(
         text,
         accepted=not why_not,
@@ -104,12 +120,15 @@ def utterance(pieces: Sequence[Spoken], weigh: Weigh, ways: Ways = Ways()) -> Ut
         audio_s=sum(piece.seconds for piece in pieces),
         free=free,
         different=different,
+        gain=gain,
         repaired=repaired,
         why_not=why_not,
     )
 
 
-def _why_not(text: str, free: str, different: float, weigh: Weigh, ways: Ways) -> str:
+def _why_not(
+    text: str, free: str, different: float, gain: float | None, weigh: Weigh, ways: Ways
+) -> str:
     if not text:
         return "no words"
     if UNKNOWN in text:
@@ -117,13 +136,33 @@ def _why_not(text: str, free: str, different: float, weigh: Weigh, ways: Ways) -
     weight = weigh(text)
     if weight is None:
         return "not understood"
-    if different > _allowed(weight, len(text.split())):
+    words = len(text.split())
+    if gain is not None and words > SHORT and gain < _least(weight, words):
+        return f"it is likelier to be what was heard freely, by {-gain:.1f} a word"
+    if gain is not None and gain >= SURE and weight is not Weight.MOVING:
+        return ""
+    if different > _allowed(weight, words):
         return f"heard freely it is {different:.2f} different"
     if different > FEW_DIFFERENT and ways.repairer is not None:
         foreign = ways.repairer.foreign(text, free)
         if len(foreign) >= FOREIGN_WORDS:
             return f"it is about {', '.join(foreign)}"
     return ""
+
+
+def _least(weight: Weight, words: int) -> float:
+    """The least that so many words must gain in likelihood, a word."""
+    return UNLIKELY_HARMLESS if weight is Weight.HARMLESS and words >= LONG else UNLIKELY
+
+
+def _gain(piece: Spoken, reading: str, alikes: SoundAlikes) -> float | None:
+    """By how much a reading explains a piece better than what was heard freely; None if unknown."""
+    if not piece.gains:
+        return None
+    for text, gain in zip(piece.alternatives, piece.gains, strict=True):
+        if reading in alikes.put_back(text):
+            return gain
+    return piece.gains[0] - UNHEARD
 
 
 def _allowed(weight: Weight, words: int) -> float:
@@ -154,6 +193,7 @@ class _Found:
 
     pieces: list[str]
     cost: float
+    reading: str
     repaired: bool = False
 
 
@@ -188,7 +228,7 @@ def _placed(chosen: list[str], reading: str, free: str, cost: float, weigh: Weig
         weight = weigh(BREAK.join(pieces))
         if weight is not None:
             asking = ASKING_COST if weight is Weight.ASKING else 0.0
-            return [_Found(pieces, cost + asking + difference(reading, free))]
+            return [_Found(pieces, cost + asking + difference(reading, free), reading)]
     return []
 
 

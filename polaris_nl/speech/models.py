@@ -135,11 +135,16 @@ def fetch(progress: Progress | None = None, target: Path | None = None) -> Path:
     return target
 
 
+_STILL = {"dither": "0.0"}
+"""Kaldi adds a little noise to what it hears, another one each time, unless it is told not to: the same sound
+has to be heard the same again."""
+
+
 def tuned(folder: Path, search: Mapping[str, str] = WIDE) -> Path:
     """A copy of a model, by links, with search settings of its own; the model itself where none can be made."""
     from platformdirs import user_cache_path
 
-    key = hashlib.sha256(f"{folder.resolve()} {sorted(search.items())}".encode()).hexdigest()[:12]
+    key = hashlib.sha256(f"{folder.resolve()} {sorted({**search, **_STILL}.items())}".encode()).hexdigest()[:12]
     copy = user_cache_path("polaris-nl") / "models" / f"{folder.name}-{key}"
     if not damage(copy):
         return copy
@@ -159,12 +164,12 @@ def tuned(folder: Path, search: Mapping[str, str] = WIDE) -> Path:
 def _link(folder: Path, made: Path, search: Mapping[str, str]) -> None:
     for name in _NEEDED:
         (made / name).parent.mkdir(parents=True, exist_ok=True)
-        if name != "conf/model.conf":
+        if name not in ("conf/model.conf", "conf/mfcc.conf"):
             (made / name).symlink_to(folder / name)
-    lines = (folder / "conf/model.conf").read_text(encoding="utf-8").splitlines()
-    (made / "conf/model.conf").write_text(
-        "\n".join(_settings(lines, search)) + "\n", encoding="utf-8"
-    )
+    for name, settings in (("conf/model.conf", search), ("conf/mfcc.conf", _STILL)):
+        lines = (folder / name).read_text(encoding="utf-8").splitlines()
+        text = "\n".join(_settings(lines, settings))
+        (made / name).write_text(f"{text}\n", encoding="utf-8")
 
 
 def _settings(lines: Iterable[str], search: Mapping[str, str]) -> Iterable[str]:

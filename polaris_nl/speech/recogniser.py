@@ -14,6 +14,20 @@ _BYTES_A_SECOND = RATE * 2
 
 
 @dataclass(frozen=True, slots=True)
+class Decoded:
+    """What a decoder makes of a piece of speech.
+
+    Attributes:
+        texts: what it may have been, the likeliest first; lower case, no punctuation; empty if no words.
+        likelihoods: the natural logarithm of the likelihood of each, of sound and language together;
+            empty where the recogniser doesn't tell.
+    """
+
+    texts: tuple[str, ...] = ()
+    likelihoods: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
 class Spoken:
     """A piece of speech between two pauses.
 
@@ -21,11 +35,22 @@ class Spoken:
         alternatives: what it may have been, the likeliest first; lower case, no punctuation.
         audio: its samples, 16 kHz mono 16 bit.
         free: what a recogniser that expects nothing in particular heard, or "".
+        gains: by how much each alternative explains the sound better than what was heard freely, as a
+            difference of log-likelihoods; empty where that isn't known.
     """
 
     alternatives: tuple[str, ...]
     audio: bytes
     free: str = ""
+    gains: tuple[float, ...] = ()
+
+    @classmethod
+    def of(cls, phrased: Decoded, free: Decoded | None, audio: bytes) -> Spoken:
+        """A piece as two decoders heard it."""
+        free = free or Decoded()
+        known = bool(free.likelihoods) and len(phrased.likelihoods) == len(phrased.texts)
+        gains = tuple(x - free.likelihoods[0] for x in phrased.likelihoods) if known else ()
+        return cls(phrased.texts, audio, free.texts[0] if free.texts else "", gains)
 
     @property
     def seconds(self) -> float:
@@ -44,8 +69,8 @@ class Decoder(Protocol):
         """The likeliest words so far."""
         ...
 
-    def finish(self) -> tuple[str, ...]:
-        """What the piece may have been, the likeliest first; empty if no words. The next one can follow."""
+    def finish(self) -> Decoded:
+        """What the piece may have been. The next one can follow."""
         ...
 
 
@@ -87,6 +112,6 @@ def pieces(
 
 def _finished(audio: bytes, phrased: Decoder, free: Decoder | None) -> Iterator[Spoken]:
     found = phrased.finish()
-    freely = free.finish() if free is not None else ()
-    if found:
-        yield Spoken(found, audio, freely[0] if freely else "")
+    freely = free.finish() if free is not None else None
+    if found.texts:
+        yield Spoken.of(found, freely, audio)

@@ -10,7 +10,7 @@ from typing import Any
 from polaris_nl.model.errors import SpeechError
 from polaris_nl.speech.audio import BLOCK, INSTALL, RATE
 from polaris_nl.speech.models import MEND, WIDE, tuned
-from polaris_nl.speech.recogniser import UNKNOWN
+from polaris_nl.speech.recogniser import UNKNOWN, Decoded
 
 ALTERNATIVES = 30
 """Readings of one piece of speech that are looked at: the first that makes sense wins."""
@@ -98,7 +98,7 @@ class VoskDecoder:
     def __init__(self, inner: Any, alternatives: int) -> None:
         self._inner = inner
         self._inner.SetMaxAlternatives(alternatives)
-        self._done: list[str] = []
+        self._done: list[_Found] = []
         self._rest = b""
 
     def feed(self, sound: bytes) -> None:
@@ -112,23 +112,36 @@ class VoskDecoder:
     def _accept(self, block: bytes) -> None:
         if self._inner.AcceptWaveform(block):
             # Vosk thinks that a sentence has ended; whether it has is decided elsewhere.
-            self._done += _texts(self._inner.Result())[:1]
+            self._done += _found(self._inner.Result())[:1]
 
     def partial(self) -> str:
         """The likeliest words so far."""
         found = str(json.loads(self._inner.PartialResult()).get("partial", ""))
-        return " ".join([*self._done, found]).strip()
+        return " ".join([*(text for text, _ in self._done), found]).strip()
 
-    def finish(self) -> tuple[str, ...]:
+    def finish(self) -> Decoded:
         """What the piece may have been; resets Vosk, so that nothing of it colours the next piece."""
         if self._rest:
             self._accept(self._rest)
-        done, self._done, self._rest = " ".join(self._done), [], b""
-        found = _texts(self._inner.FinalResult()) or ([""] if done else [])
-        return tuple(f"{done} {text}".strip() for text in found)
+        done, self._done, self._rest = self._done, [], b""
+        found = _found(self._inner.FinalResult()) or ([("", 0.0)] if done else [])
+        before = "".join(f"{text} " for text, _ in done)
+        likelihood = sum(value for _, value in done)
+        return Decoded(
+            tuple(f"{before}{text}".strip() for text, _ in found),
+            tuple(likelihood + value for _, value in found),
+        )
 
 
-def _texts(result: str) -> list[str]:
-    found = json.loads(result)
-    texts = (str(a.get("text", "")).strip() for a in found.get("alternatives", (found,)))
-    return list(dict.fromkeys(t for t in texts if t))
+_Found = tuple[str, float]
+"""A reading, and the logarithm of its likelihood, which Vosk calls its confidence."""
+
+
+def _found(result: str) -> list[_Found]:
+    """The readings of a result, each once."""
+    found: dict[str, float] = {}
+    for one in json.loads(result).get("alternatives", ()):
+        text = str(one.get("text", "")).strip()
+        if text:
+            found.setdefault(text, float(one.get("confidence", 0.0)))
+    return list(found.items())

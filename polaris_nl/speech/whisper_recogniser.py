@@ -6,6 +6,7 @@ import re
 from typing import Any
 
 from polaris_nl.model.errors import SpeechError
+from polaris_nl.speech.recogniser import Decoded
 
 _NOT_SAID = re.compile(r"\[[^]]*]|\([^)]*\)")
 """What Whisper writes about sounds: "[BLANK_AUDIO]"."""
@@ -57,13 +58,13 @@ class WhisperDecoder:
         """Nothing: Whisper hears whole pieces only."""
         return ""
 
-    def finish(self) -> tuple[str, ...]:
+    def finish(self) -> Decoded:
         """What the piece was, as Vosk would write it: lower case, no signs, numbers in words."""
         import numpy
 
         sound, self._sound = bytes(self._sound), bytearray()
         if not sound:
-            return ()
+            return Decoded()
         samples = numpy.frombuffer(sound, dtype="<i2").astype("float32") / 32768
         segments, _ = self._model.transcribe(
             samples,
@@ -73,7 +74,7 @@ class WhisperDecoder:
             without_timestamps=True,
         )
         text = plain(" ".join(segment.text for segment in segments))
-        return (text,) if text else ()
+        return Decoded((text,) if text else ())
 
 
 def plain(text: str) -> str:
