@@ -11,6 +11,7 @@ COMPILE := $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --gen
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps
 INTERFACES := $(wildcard polaris_nl/execution/ros/interfaces/*/*/*)
 VOICES := .venv-voices
+THINKING := $(addprefix tests/,automaton interchange language model planning render repo scoring session)
 
 .DEFAULT_GOAL := help
 .PHONY: help demo test robot bench score-language score-speech lint format lock clean models
@@ -21,8 +22,10 @@ help: ## show this list
 demo: $(STAMP) models ## speak, plan, run and review the caregiving program, without a robot
 	@$(BIN)/polaris-nl demo
 
+# Tests that only think share the cores. Robots, terminals and sound run in real time, so theirs come one by one.
 test: $(ROBOT) models lint ## everything that CI checks
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest --numprocesses auto --maxprocesses 4 --dist worksteal $(THINKING)
+	$(BIN)/python -m pytest $(addprefix --ignore=,$(THINKING))
 
 robot: $(ROBOT) ## what `run --robot stretch-sim` needs: ROS 2, its messages, the simulator
 

@@ -16,11 +16,15 @@ from polaris_nl.language.predicate_phrases import Phrases
 from polaris_nl.language.template import Choice, Part, Parts, Slot, Word
 from polaris_nl.language.tokens import phrase
 from polaris_nl.model.domain import Predicate
-from polaris_nl.model.world import World
+from polaris_nl.model.text import plural_of
+from polaris_nl.model.world import Entity, World
 
-MOST = 20_000
+MOST, PLAIN = 20_000, 6_000
+"""Phrases of all, and of plain ones."""
 PER_CHOICE = 2
 """How often each choice of a wording occurs, where there is room."""
+OFTEN = 4
+"""After so many names comes a pronoun again: no name is said as often."""
 COMPOSED = 4_000
 """Phrases of two clauses, so that the ways from one clause into the next are heard too."""
 
@@ -32,7 +36,16 @@ _PRONOUNS: dict[str, tuple[tuple[str, ...], ...]] = {
     "message": (("it",), ("that",)),
 }
 _LEADS: dict[str, tuple[tuple[str, ...], ...]] = {
-    "object": (("the",), ("a",), ("the", "full"), ("a", "full"), ("both",)),
+    "object": (
+        ("the",),
+        ("a",),
+        ("her",),
+        ("his",),
+        ("some",),
+        ("the", "full"),
+        ("a", "full"),
+        ("both",),
+    ),
     "surface": (("the",), ("her",), ("his",), ("my",)),
     "region": (("the",), (), ("her",)),
     "person": (("the",), ()),
@@ -42,11 +55,11 @@ _SOFTENERS: tuple[tuple[str, ...], ...] = ((), (), ("just",), ("please",), ("the
 
 
 def recogniser_phrases(world: World, grammar: Grammar) -> tuple[str, ...]:
-    """At most 20,000 phrases in a fixed order: controls, names, clauses, then pairs of clauses."""
+    """At most MOST phrases in a fixed order: controls, names, plain clauses, all, pairs."""
     maker = _Maker(world, grammar)
     found = dict.fromkeys(_text(words) for words in maker.fixed())
-    clauses = maker.clauses(MOST - len(found) - COMPOSED)
-    for words in itertools.chain(clauses, maker.composed()):
+    clauses = maker.clauses(MOST - len(found) - COMPOSED - PLAIN)
+    for words in itertools.chain(maker.plain(), clauses, maker.composed()):
         found[_text(words)] = None
         if len(found) >= MOST:
             break
@@ -65,18 +78,16 @@ class _Source:
     parts: Parts
     kind: str
     types: Mapping[str, Sequence[str]] = field(default_factory=dict)
+    plain: bool = False
     drawn: int = 0
 
 
 class _Maker:
     def __init__(self, world: World, grammar: Grammar) -> None:
+        self._world = world
         self._grammar = grammar
         self._names: _Names = {
-            kind: [
-                words
-                for e in world.of_type(kind)
-                for words in dict.fromkeys(map(phrase, (e.spoken, *e.synonyms)))
-            ]
+            kind: [words for e in world.of_type(kind) for words in _called(e)]
             for kind in world.domain.types
         }
         self._fillers: dict[tuple[str, ...], list[tuple[str, ...]]] = {}
@@ -103,6 +114,7 @@ class _Maker:
             for words in names:
                 yield words
                 yield from ((*lead, *words) for lead in _LEADS.get(kind, (("the",),)))
+        yield from (("go", *words) for words in self._names.get("region", ()))  # "go home"
         for intent in (i for i in common.intents if i.kind != "command"):
             for template in intent.wordings:
                 count = 12 if intent.kind == "correction" else 6
@@ -121,6 +133,25 @@ class _Maker:
                     yield (*self._ifs[number % len(self._ifs)], *words)
                 else:
                     yield (*_SOFTENERS[number % len(_SOFTENERS)], *words)
+
+    def plain(self) -> Iterator[Sequence[str]]:
+        """What is said most: the program's own wordings, and all without what can be left out."""
+        phrases = [
+            (p, self._world.domain.predicates[p.predicate])
+            for p in self._grammar.predicates.values()
+            if p.predicate in self._world.domain.predicates
+        ]
+        sources = [s for p, predicate in phrases for s in _own(p, predicate)]
+        sources += [
+            _Source(s.parts, s.kind, s.types, plain=True)
+            for s in self._sources
+            if s.kind in ("goals", "states")
+        ]
+        each = PLAIN // max(len(sources), 1)
+        for source in sources:
+            for number, words in enumerate(self._drawn(source, each)):
+                lead = self._ifs[number % len(self._ifs)] if source.kind == "states" else ()
+                yield (*lead, *words)
 
     def composed(self) -> Iterator[Sequence[str]]:
         """Two clauses at a time: "if E, G" and "G then G"."""
@@ -154,7 +185,7 @@ class _Maker:
                 fillers = self._slot(part, source)
                 if fillers:
                     words.extend(fillers[_turned(turn, place, len(fillers))])
-            else:
+            elif not (source.plain and any(not option.parts for option in part.options)):
                 option = part.options[_turned(turn, place, len(part.options))]
                 words.extend(self._pick(option.parts, source, turn // len(part.options)))
         return words
@@ -180,13 +211,28 @@ class _Maker:
         if kinds not in self._fillers:
             found: list[tuple[str, ...]] = []
             for kind in kinds:
-                found.extend(_PRONOUNS.get(kind, ()))
+                pronouns = _PRONOUNS.get(kind, ())
+                found.extend(pronouns)
                 leads = _LEADS.get(kind, (("the",),))
                 for number, words in enumerate(self._names.get(kind, ())):
                     found.append((*leads[0], *words))
                     found.append((*leads[number % len(leads)], *words))
-            self._fillers[kinds] = list(dict.fromkeys(found))
+                    if () in leads:
+                        found.append(tuple(words))
+                    if pronouns and number % OFTEN == 0:
+                        found.append(pronouns[number // OFTEN % len(pronouns)])
+            self._fillers[kinds] = found
         return self._fillers[kinds]
+
+
+def _called(entity: Entity) -> Iterator[tuple[str, ...]]:
+    """The ways to name an entity: by name, synonyms, and its noun with each of its adjectives."""
+    noun = phrase(entity.noun) if entity.noun else phrase(entity.spoken)
+    kinds = [
+        phrase(plural_of(kind)) for kind in (*entity.kinds, *([entity.noun] if entity.noun else []))
+    ]
+    described = [(*phrase(adjective), *noun) for adjective in entity.adjectives]
+    yield from dict.fromkeys((*map(phrase, (entity.spoken, *entity.synonyms)), *described, *kinds))
 
 
 def _sources(phrases: Phrases, predicate: Predicate) -> Iterator[_Source]:
@@ -194,6 +240,16 @@ def _sources(phrases: Phrases, predicate: Predicate) -> Iterator[_Source]:
     for kind, templates in phrases.wordings.items():
         for template in templates:
             yield _Source(template, kind, types)
+
+
+def _own(phrases: Phrases, predicate: Predicate) -> Iterator[_Source]:
+    """The wordings in which the program itself speaks of a predicate."""
+    types = {p.name.lstrip("?"): p.types for p in predicate.parameters}
+    for kind in ("goal", "not-goal", "event", "fact"):
+        if kind in phrases.texts:
+            words = phrases.texts[kind].split()
+            parts = Parts(tuple(Slot(w[1:-1], "") if w[0] == "{" else Word(w) for w in words))
+            yield _Source(parts, "goals" if kind.endswith("goal") else "states", types)
 
 
 def _turned(turn: int, place: int, count: int) -> int:

@@ -144,7 +144,9 @@ def tuned(folder: Path, search: Mapping[str, str] = WIDE) -> Path:
     """A copy of a model, by links, with search settings of its own; the model itself where none can be made."""
     from platformdirs import user_cache_path
 
-    key = hashlib.sha256(f"{folder.resolve()} {sorted({**search, **_STILL}.items())}".encode()).hexdigest()[:12]
+    key = hashlib.sha256(
+        f"{folder.resolve()} {sorted({**search, **_STILL}.items())}".encode()
+    ).hexdigest()[:12]
     copy = user_cache_path("polaris-nl") / "models" / f"{folder.name}-{key}"
     if not damage(copy):
         return copy

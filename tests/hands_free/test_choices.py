@@ -48,3 +48,12 @@ def test_every_answer_can_be_heard() -> None:
     phrases = choice_phrases()
     assert {"one", "the second one", "number three", "none of these"} <= set(phrases)
     assert len(phrases) == len(set(phrases))
+
+
+def test_one_sentence_is_a_question_for_yes_or_no() -> None:
+    one = Choices(("bring the cup",))
+    assert one.say == "Did you mean: bring the cup? Say yes or no."
+    assert one.chosen("yes") == one.chosen("the first one") == "bring the cup"
+    assert one.chosen("no") == ""
+    assert one.chosen("go home") is None
+    assert CHOICES.chosen("yes") is None

@@ -8,7 +8,7 @@ import pytest
 
 from polaris_nl.speech.hearing import Utterance, Ways, utterance
 from polaris_nl.speech.lexicon import SoundAlikes
-from polaris_nl.speech.recogniser import Spoken
+from polaris_nl.speech.recogniser import Decoded, Spoken
 from polaris_nl.speech.repair import Repairer
 from polaris_nl.speech.weight import Weigh, Weight
 
@@ -146,3 +146,53 @@ def test_words_that_were_listened_for_under_others_are_put_back() -> None:
         ways,
     )
     assert (said.text, said.accepted) == ("bring the zorblax", True)
+
+
+ASTRAY = "what a lovely day it is outside"
+
+
+def judged(gain: float, weight: Weight, text: str, free: str = ASTRAY) -> Utterance:
+    """A text that makes sense, heard freely as something else, that gains so much in likelihood a word."""
+    piece = Spoken((text,), AUDIO, free, (gain * len(text.split()),))
+    return utterance([piece], when(lambda t: t == text, weight))
+
+
+def test_phrases_that_explain_the_sound_better_are_right_whatever_was_heard_freely() -> None:
+    sentence = "bring the cup to the table"
+    assert judged(0.2, Weight.CHANGING, sentence).accepted
+    assert judged(0.2, Weight.CHANGING, sentence).gain == pytest.approx(0.2)
+    assert not judged(-1.0, Weight.CHANGING, sentence).accepted
+    assert not judged(0.2, Weight.MOVING, "start to run it now").accepted
+
+
+def test_phrases_that_explain_it_far_worse_are_not_believed_even_where_the_words_are_alike() -> (
+    None
+):
+    sentence = "why have you moved the cup"
+    almost = "why have you moved a cup"
+    assert judged(-3.0, Weight.CHANGING, sentence, almost).accepted
+    said = judged(-3.0, Weight.HARMLESS, sentence, almost)
+    assert said.why_not == "it is likelier to be what was heard freely, by 3.0 a word"
+    assert not judged(-4.0, Weight.CHANGING, sentence, almost).accepted
+    # A word or two are too short to be sure of, and among many phrases each is unlikely by itself.
+    assert judged(-8.0, Weight.HARMLESS, "yeah", "yeah").accepted
+
+
+def test_the_gain_is_that_of_the_reading_that_is_chosen() -> None:
+    piece = Spoken(("go hum", "go home"), AUDIO, ASTRAY, (9.0, 1.0))
+    assert utterance([piece], when(lambda t: t == "go home")).gain == pytest.approx(0.5)
+    nowhere = Spoken(("go hum",), AUDIO, "go home", (9.0,))
+    found = utterance(
+        [nowhere], when(lambda t: t == "go home"), Ways(repairer=Repairer(["go", "home"]))
+    )
+    assert (found.text, found.gain) == ("go home", pytest.approx(0.5))
+
+
+def test_without_likelihoods_nothing_is_gained() -> None:
+    assert Spoken.of(Decoded(("go home",)), Decoded(("go home",), (3.0,)), AUDIO).gains == ()
+    assert Spoken.of(Decoded(("go home",), (5.0,)), None, AUDIO).gains == ()
+    assert Spoken.of(Decoded(("a", "b"), (5.0, 4.0)), Decoded(("c",), (3.0,)), AUDIO).gains == (
+        2.0,
+        1.0,
+    )
+    assert utterance([spoken("go home")], when(lambda t: True)).gain is None

@@ -139,6 +139,7 @@ def test_the_tuned_copy_links_and_searches_more_widely(
     lines = (copy / "conf/model.conf").read_text().splitlines()
     assert lines[:4] == ["--other=1", "--beam=15.0", "--lattice-beam=8.0", "--max-active=7000"]
     assert "--endpoint.rule2.min-trailing-silence=60.0" in lines
+    assert "--dither=0.0" in (copy / "conf/mfcc.conf").read_text().splitlines()
     assert models.tuned(folder, models.NARROW) != copy
     assert models.tuned(folder) == copy
 

@@ -1,0 +1,74 @@
+"""What makes sense, but hardly was said, is asked about: a wrong goal is worse than a question."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+
+from polaris_nl.execution.events import Event, Heard
+from polaris_nl.hands_free.conversation import Conversation, Reply
+from polaris_nl.hands_free.weight import weight_of
+from polaris_nl.model.world_file import load_world
+from polaris_nl.session import Session
+from polaris_nl.speech.hearing import Utterance
+from polaris_nl.speech.weight import Weight
+
+MISHEARD = "silver tray and put it on the dining table"
+
+
+@pytest.fixture
+def session() -> Iterator[Session]:
+    with Session(load_world("care-home")) as session:
+        yield session
+
+
+def take(conversation: Conversation, text: str, accepted: bool) -> Reply:
+    said = Utterance(text, accepted, why_not="" if accepted else "not understood")
+    heard = Heard(time=0.0, utterance=text, source="voice")
+    return conversation.take(said, heard, True, lambda: [])
+
+
+@pytest.mark.parametrize(
+    ("text", "weight"),
+    [
+        (MISHEARD, None),
+        ("like i go to the laundry room and open the basket", None),
+        ("put the tray on the dining table", Weight.CHANGING),
+        ("fill the tray and put it on the dining table", Weight.CHANGING),
+        ("go to the laundry room and open the basket", Weight.CHANGING),
+    ],
+)
+def test_words_that_ask_for_nothing_themselves_are_no_command(
+    session: Session, text: str, weight: Weight | None
+) -> None:
+    assert session.understood(text).outcome == "applied"
+    assert weight_of(session.understood(text)) is weight
+
+
+def test_what_is_doubtful_is_asked_about_and_done_after_a_yes(session: Session) -> None:
+    logged: list[Event] = []
+    conversation = Conversation(session, logged.append)
+    empty = session.snapshot.automaton
+    reply = take(conversation, MISHEARD, accepted=False)
+    assert reply.text == f"Did you mean: {MISHEARD}? Say yes or no."
+    assert session.snapshot.automaton == empty
+    assert [e.utterance for e in logged if isinstance(e, Heard)] == [MISHEARD]
+    assert take(conversation, "yes", accepted=True).text.startswith("Bring the tray")
+    assert session.snapshot.automaton != empty
+
+
+def test_a_no_leaves_all_as_it_is(session: Session) -> None:
+    conversation = Conversation(session)
+    empty = session.snapshot.automaton
+    take(conversation, MISHEARD, accepted=False)
+    assert take(conversation, "no", accepted=True).text == "All right. Say it in other words."
+    assert session.snapshot.automaton == empty
+
+
+def test_another_sentence_is_taken_instead_of_an_answer(session: Session) -> None:
+    conversation = Conversation(session)
+    take(conversation, MISHEARD, accepted=False)
+    take(conversation, "go to the kitchen", accepted=True)
+    (goal,) = [g for c in session.snapshot.automaton.checkpoints.values() for g in c.goals]
+    assert str(goal) == "(robot-at kitchen)"
