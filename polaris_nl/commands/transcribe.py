@@ -96,7 +96,8 @@ def hear_file(path: Path, ears: Ears, session: Session) -> tuple[Utterance, Answ
 
 def take(said: Utterance, source: str, session: Session) -> tuple[Utterance, Answer]:
     """Carries out what was said."""
-    if said.accepted or (said.text and weigher(session)(said.text) is None):
+    # What isn't understood at all is handed on for its reason; what is doubtful mustn't change anything.
+    if said.accepted or (said.text and session.understood(said.text).outcome == "refused"):
         return said, session.say(said.text, source=source)
     return said, not_meant(session, said)
 

@@ -6,6 +6,8 @@ from collections.abc import Iterator
 
 import pytest
 
+from polaris_nl.commands.transcribe import NOT_MEANT
+from polaris_nl.commands.transcribe import take as transcribed
 from polaris_nl.execution.events import Event, Heard
 from polaris_nl.hands_free.conversation import Conversation, Reply
 from polaris_nl.hands_free.weight import weight_of
@@ -72,3 +74,14 @@ def test_another_sentence_is_taken_instead_of_an_answer(session: Session) -> Non
     take(conversation, "go to the kitchen", accepted=True)
     (goal,) = [g for c in session.snapshot.automaton.checkpoints.values() for g in c.goals]
     assert str(goal) == "(robot-at kitchen)"
+
+
+def test_a_recording_that_is_doubtful_changes_nothing(session: Session) -> None:
+    empty = session.snapshot.automaton
+    _, answer = transcribed(Utterance(MISHEARD, False), "order.wav", session)
+    assert answer.say == NOT_MEANT
+    assert session.snapshot.automaton == empty
+    _, answer = transcribed(Utterance("paint the elephant", False), "order.wav", session)
+    assert "elephant" in answer.say
+    transcribed(Utterance("go to the kitchen", True), "order.wav", session)
+    assert session.snapshot.automaton != empty
