@@ -1,24 +1,31 @@
-"""A microphone of this machine, by sounddevice: found, tried, and found again after it was unplugged."""
+"""A microphone of this machine, by sounddevice: found, tried, and found again after it was unplugged.
+
+It is recorded by a process of its own (`microphone_process.py`): with some sound systems, leaving a
+device that is gone never ends, whether its stream is stopped or aborted. A process can be ended always.
+"""
 
 from __future__ import annotations
 
-import queue
+import os
+import select
+import subprocess
+import sys
 import time
 from collections.abc import Callable, Iterator
 from typing import Any
 
 from polaris_nl.model.errors import SpeechError
-from polaris_nl.speech.audio import BLOCK, INSTALL, RATE
+from polaris_nl.speech.audio import INSTALL
+from polaris_nl.speech.microphone_process import FRAME, REFUSED, unpacked
 from polaris_nl.speech.trouble import Trouble
 
-FIRST_S = 4.0
-"""How long the first block may take: opening a device takes up to two seconds."""
+FIRST_S = 6.0
+"""How long the first block may take: opening a device takes up to two seconds, and a process has to start."""
 LOST_S = 1.0
 """A microphone that gives nothing for so long is gone."""
 AGAIN_S = 1.0
 """Seconds between attempts to open it again."""
-MOST_WAITING = 100
-"""Blocks that are kept while nobody takes them: 10 s."""
+_READ = 1 << 16
 
 
 class Microphone:
@@ -33,7 +40,7 @@ class Microphone:
 
     def __init__(self, device: str | None, wait: Callable[[float], None] = time.sleep) -> None:
         self.name = device or "the microphone"
-        self._device = int(device) if device and device.isdigit() else device
+        self._device = device
         self._wait = wait
 
     def sound(self) -> Iterator[bytes | Trouble]:
@@ -42,21 +49,17 @@ class Microphone:
         Raises:
             SpeechError: it can't be used from the start.
         """
-        library = _library()
-        first, looked, troubled = True, False, False
+        _library()  # Says what is missing, if anything is.
+        first, troubled = True, False
         while True:
             try:
-                for block in self._blocks(library):
+                for block in _blocks(self._device):
                     if troubled and isinstance(block, bytes):
                         yield Trouble(f"{self._called} is back.", over=True)
                         troubled = False
                     first = False
                     yield block
-            except (library.PortAudioError, ValueError) as error:
-                if first and not looked:
-                    looked = True
-                    _look_again(library)
-                    continue
+            except _Refused as error:
                 if first:
                     raise SpeechError(
                         f"{self._called} can't be used. Microphones here: {_known()}. A recording can be given "
@@ -66,47 +69,51 @@ class Microphone:
                 yield Trouble(f"{self._called} gives no sound any more. Plug it in again; I wait.")
                 troubled = True
             self._wait(AGAIN_S)
-            _look_again(library)
 
     @property
     def _called(self) -> str:
         return f"The microphone {self._device}" if self._device is not None else "The microphone"
 
-    def _blocks(self, library: Any) -> Iterator[bytes | Trouble]:
-        """Blocks until the device gives no more."""
-        waiting: queue.Queue[bytes] = queue.Queue(MOST_WAITING)
-        lost = [0]
 
-        def keep(data: Any, frames: int, when: Any, status: Any) -> None:
-            if status.input_overflow:
-                lost[0] += 1
-            try:
-                waiting.put_nowait(bytes(data))
-            except queue.Full:
-                lost[0] += 1
+class _Refused(Exception):
+    """The device can't be opened."""
 
-        stream = library.RawInputStream(
-            samplerate=RATE, blocksize=BLOCK, channels=1, dtype="int16", device=self._device, callback=keep
-        )  # fmt: skip
-        try:
-            stream.start()
-            patience = FIRST_S
-            while True:
-                try:
-                    block = waiting.get(timeout=patience)
-                except queue.Empty:
-                    return
+
+def _blocks(device: str | None) -> Iterator[bytes | Trouble]:
+    """Blocks until the device gives no more.
+
+    Raises:
+        _Refused: it can't be opened.
+    """
+    command = [sys.executable, "-m", "polaris_nl.speech.microphone_process", device or ""]
+    recorder = subprocess.Popen(
+        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
+    )
+    assert recorder.stdout is not None
+    assert recorder.stdin is not None
+    try:
+        patience, pending = FIRST_S, b""
+        while select.select([recorder.stdout], [], [], patience)[0]:
+            found = os.read(recorder.stdout.fileno(), _READ)
+            if not found:
+                if recorder.wait() == REFUSED:
+                    raise _Refused(device)
+                return
+            pending += found
+            while len(pending) >= FRAME:
+                frame, pending = pending[:FRAME], pending[FRAME:]
                 patience = LOST_S
-                if lost[0]:
-                    lost[0] = 0
+                block, lost = unpacked(frame)
+                if lost:
                     yield Trouble(
                         "Some sound was lost: this machine is too busy. Say it again.", over=True
                     )
                 yield block
-        finally:
-            # To stop it would wait for the device to end its last block, and one that is gone never does.
-            stream.abort()
-            stream.close()
+    finally:
+        recorder.kill()
+        recorder.stdin.close()
+        recorder.stdout.close()
+        recorder.wait()
 
 
 def microphones() -> list[str]:
@@ -119,6 +126,7 @@ def microphones() -> list[str]:
 
 
 def _known() -> str:
+    _look_again(_library())
     return ", ".join(microphones()) or "none"
 
 

@@ -16,6 +16,7 @@ from polaris_nl.speech.activity import SileroActivity
 from polaris_nl.speech.audio import level
 from polaris_nl.speech.ears import EarMaker
 from polaris_nl.speech.microphone import Microphone, microphones
+from polaris_nl.speech.microphone_process import FRAME, frames, unpacked
 from polaris_nl.speech.recogniser import pieces
 from polaris_nl.speech.trouble import Trouble
 from tests.speech.sound_card import SoundCard, sound_card
@@ -88,8 +89,6 @@ def test_a_microphone_that_isn_t_there_is_named_with_those_that_are() -> None:
 class Hasty:
     """A sound library whose device gives three blocks at once, and had to drop sound before the second."""
 
-    PortAudioError = OSError
-
     class RawInputStream:
         def __init__(self, callback: Callable[..., None], **_: object) -> None:
             self._callback = callback
@@ -99,15 +98,20 @@ class Hasty:
                 status = SimpleNamespace(input_overflow=number == 1)
                 self._callback(bytes([number]), 1, None, status)
 
-        def abort(self) -> None:
-            pass
 
-        def close(self) -> None:
-            pass
+def test_lost_sound_is_told_with_the_block_after_it() -> None:
+    found = [unpacked(frame) for frame in itertools.islice(frames(Hasty, None), 3)]
+    assert found == [(b"\0", False), (b"\1", True), (b"\2", False)]
 
 
-def test_lost_sound_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(microphone, "_library", Hasty)
-    found = list(itertools.islice(Microphone("busy").sound(), 4))
+def test_lost_sound_is_said(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    recorder = tmp_path / "recorder"
+    recorder.write_text(
+        f"#!/bin/sh\nhead -c {FRAME} /dev/zero; printf '\\001'; head -c {FRAME - 1} /dev/zero; exec cat\n"
+    )
+    recorder.chmod(0o755)
+    monkeypatch.setattr(microphone.sys, "executable", str(recorder))
+    sound = Microphone("busy").sound()
     lost = Trouble("Some sound was lost: this machine is too busy. Say it again.", over=True)
-    assert found == [lost, b"\0", b"\1", b"\2"]
+    assert list(itertools.islice(sound, 3)) == [bytes(FRAME - 1), lost, bytes(FRAME - 1)]
+    sound.close()
