@@ -22,6 +22,8 @@ from polaris_nl.session import Session
 from polaris_nl.snapshot import Answer
 from polaris_nl.speech.hearing import Utterance
 
+ANSWERS = 3
+"""Readings that may answer an offered choice: the likeliest ones."""
 FAILURES = 2
 """After so many failures in a row, choices are offered."""
 MEANT, MEANT_WHEN_CALLED = 0.15, 0.6
@@ -106,7 +108,8 @@ class Conversation:
             near: finds what else may have been said.
         """
         if self._choices is not None:
-            chosen = self._choices.chosen(said.text)
+            answers = map(self._choices.chosen, (said.text, *said.alternatives[:ANSWERS]))
+            chosen = next((answer for answer in answers if answer is not None), None)
             if chosen is not None:
                 self._choices = None
                 self._failures = 0
@@ -155,7 +158,8 @@ class Conversation:
     ) -> Reply:
         self._failures += 1
         choices = None
-        if self.session.understood(said.text).outcome != "refused":
+        meant = self.session.understood(said.text)
+        if meant.edits or meant.command is not None:
             # It makes sense, but too little speaks for it: it is asked about, and not done.
             choices = choices_among((said.text,), ())
         elif self._failures >= FAILURES:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import errno
 import fcntl
+import io
 import json
 import os
 import pty
@@ -36,6 +38,7 @@ from polaris_tui.remote import RemoteRun
 from polaris_tui.running import Running
 from polaris_tui.scene import Scene
 from polaris_tui.serving import served
+from polaris_tui.start import printed
 from tests.planning.conftest import program
 from tests.tui.conftest import LIMIT_S, LUNCH
 
@@ -267,6 +270,17 @@ def test_a_line_that_hangs_up_lets_the_run_go_on(tmp_path: Path) -> None:
     assert any(
         e.text == "You stopped the run." for m in told if isinstance(m, Happened) for e in [m.event]
     )
+
+
+def test_a_terminal_that_is_gone_breaks_nothing_before_its_signal_comes(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    class Gone(io.StringIO):
+        def write(self, text: str, /) -> int:
+            raise OSError(errno.EIO, "Input/output error")
+
+    monkeypatch.setattr("sys.stdout", Gone())
+    printed("I wait.")
 
 
 def _own_terminal() -> None:

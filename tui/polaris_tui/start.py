@@ -158,7 +158,7 @@ def _lines(
     )
     talk = Plain(
         session,
-        lambda line: print(line, flush=True),
+        printed,
         scene,
         width(),
         logs=settings.logs_folder,
@@ -175,3 +175,9 @@ def _lines(
         talk.open_log(log)
     talk.work(typed_lines())
     return 0
+
+
+def printed(line: str) -> None:
+    """Prints a line, or not: a terminal may be gone before its signal comes, and no run ends for that."""
+    with contextlib.suppress(OSError):
+        print(line, flush=True)
