@@ -108,7 +108,8 @@ class Conversation:
             near: finds what else may have been said.
         """
         if self._choices is not None:
-            answers = map(self._choices.chosen, (said.text, *said.alternatives[:ANSWERS]))
+            others = () if said.accepted else said.alternatives[:ANSWERS]
+            answers = map(self._choices.chosen, (said.text, *others))
             chosen = next((answer for answer in answers if answer is not None), None)
             if chosen is not None:
                 self._choices = None

@@ -85,3 +85,20 @@ def test_a_recording_that_is_doubtful_changes_nothing(session: Session) -> None:
     assert "elephant" in answer.say
     transcribed(Utterance("go to the kitchen", True), "order.wav", session)
     assert session.snapshot.automaton != empty
+
+
+def test_another_sentence_is_no_answer_though_it_may_have_sounded_like_one(
+    session: Session,
+) -> None:
+    conversation = Conversation(session)
+    take(conversation, MISHEARD, accepted=False)
+    said = Utterance("go home", True, alternatives=("go home", "no"))
+    heard = Heard(time=0.0, utterance="go home", source="voice")
+    conversation.take(said, heard, True, lambda: [])
+    (goal,) = [g for c in session.snapshot.automaton.checkpoints.values() for g in c.goals]
+    assert str(goal) == "(robot-at home)"
+    # What isn't accepted as anything else may be an answer by its next readings.
+    take(conversation, MISHEARD, accepted=False)
+    unsure = Utterance("i no", False, alternatives=("i no", "no"), why_not="not understood")
+    reply = conversation.take(unsure, heard, True, lambda: [])
+    assert reply.text == "All right. Say it in other words."

@@ -21,7 +21,8 @@ def alone_on_the_terminal(messages: Path) -> Iterator[None]:
         messages: the file, which is begun anew; where it can't be made, what is written is lost.
     """
     real, ours = os.dup(STDERR), (sys.stderr, sys.__stderr__)
-    # Line by line, as the real one; the screen flushes what it draws.
+    # Line by line, as the real one; the screen flushes what it draws. A path can't open a descriptor (PTH123),
+    # and it stays open for as long as the application has the terminal (SIM115).
     screen = open(os.dup(real), "w", encoding="utf-8", errors="replace", buffering=1)  # noqa: PTH123, SIM115
     try:
         os.dup2(_opened(messages), STDERR)
