@@ -6,17 +6,17 @@ device that is gone never ends, whether its stream is stopped or aborted. A proc
 
 from __future__ import annotations
 
+import json
 import os
 import select
 import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
-from typing import Any
 
 from polaris_nl.model.errors import SpeechError
 from polaris_nl.speech.audio import INSTALL
-from polaris_nl.speech.microphone_process import FRAME, REFUSED, unpacked
+from polaris_nl.speech.microphone_process import FRAME, LIST, REFUSED, unpacked
 from polaris_nl.speech.trouble import Trouble
 
 FIRST_S = 6.0
@@ -49,7 +49,7 @@ class Microphone:
         Raises:
             SpeechError: it can't be used from the start.
         """
-        _library()  # Says what is missing, if anything is.
+        _require()
         first, troubled = True, False
         while True:
             try:
@@ -61,8 +61,9 @@ class Microphone:
                     yield block
             except _Refused as error:
                 if first:
+                    here = ", ".join(microphones()) or "none"
                     raise SpeechError(
-                        f"{self._called} can't be used. Microphones here: {_known()}. A recording can be given "
+                        f"{self._called} can't be used. Microphones here: {here}. A recording can be given "
                         "instead: --mic FILE.wav"
                     ) from error
             if not troubled:
@@ -85,9 +86,11 @@ def _blocks(device: str | None) -> Iterator[bytes | Trouble]:
     Raises:
         _Refused: it can't be opened.
     """
-    command = [sys.executable, "-m", "polaris_nl.speech.microphone_process", device or ""]
     recorder = subprocess.Popen(
-        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
+        [*_process(), device or ""],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
     )
     assert recorder.stdout is not None
     assert recorder.stdin is not None
@@ -117,32 +120,35 @@ def _blocks(device: str | None) -> Iterator[bytes | Trouble]:
 
 
 def microphones() -> list[str]:
-    """The names of the microphones there are; empty where there is no sound at all."""
+    """The names of the microphones there are now; empty where there is no sound at all.
+
+    They are asked for in a process, too: PortAudio looks for devices once, when it is loaded.
+    """
+    asked = subprocess.run(
+        [*_process(), LIST],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+    )
+    found: list[str] = json.loads(asked.stdout) if asked.returncode == 0 else []
+    return found
+
+
+def _process() -> list[str]:
+    return [sys.executable, "-m", "polaris_nl.speech.microphone_process"]
+
+
+def _require() -> None:
+    """Says what is missing, if anything is.
+
+    Raises:
+        SpeechError: sounddevice or its library.
+    """
     try:
-        library = _library()
-    except SpeechError:
-        return []
-    return [d["name"] for d in library.query_devices() if d["max_input_channels"] > 0]
-
-
-def _known() -> str:
-    _look_again(_library())
-    return ", ".join(microphones()) or "none"
-
-
-def _library() -> Any:
-    try:
-        import sounddevice
+        import sounddevice  # noqa: F401
     except ImportError as error:
         raise SpeechError(f"A microphone needs sounddevice. {INSTALL}") from error
     except OSError as error:
         raise SpeechError(
             "A microphone needs the PortAudio library; install it with: sudo scripts/install-system voice"
         ) from error
-    return sounddevice
-
-
-def _look_again(library: Any) -> None:
-    """PortAudio lists devices once, when it starts; so it is started anew to see what was plugged in."""
-    library._terminate()
-    library._initialize()

@@ -1,13 +1,16 @@
-"""The process that records a microphone: frames of sound to standard output, until standard input ends.
+"""The process that records a microphone, or says which there are.
 
     python -m polaris_nl.speech.microphone_process [DEVICE]
+    python -m polaris_nl.speech.microphone_process --list
 
+It writes frames of sound to standard output until standard input ends, or a JSON list of names.
 A frame is one byte, 1 where sound was lost before it and else 0, and a block of 100 ms at 16 kHz, mono, 16 bit.
 It ends with `REFUSED` where the device can't be opened.
 """
 
 from __future__ import annotations
 
+import json
 import os
 import queue
 import sys
@@ -21,6 +24,7 @@ FRAME = 1 + BLOCK * 2
 """Bytes of a frame."""
 REFUSED = 3
 """The exit code for a device that can't be opened."""
+LIST = "--list"
 MOST_WAITING = 100
 """Blocks that are kept while nobody takes them: 10 s."""
 
@@ -63,12 +67,17 @@ def main() -> None:
     """Records."""
     import sounddevice
 
+    named = sys.argv[1] if len(sys.argv) > 1 else ""
+    if named == LIST:
+        found = sounddevice.query_devices()
+        sys.stdout.write(json.dumps([d["name"] for d in found if d["max_input_channels"] > 0]))
+        return
+
     def end_with_parent() -> None:
         sys.stdin.buffer.read()
         os._exit(0)  # Leaving a device that is gone may never end.
 
     threading.Thread(target=end_with_parent, daemon=True).start()
-    named = sys.argv[1] if len(sys.argv) > 1 else ""
     device = int(named) if named.isdigit() else named or None
     try:
         for frame in frames(sounddevice, device):

@@ -54,6 +54,12 @@ def test_what_is_said_into_the_microphone_is_heard(card: SoundCard) -> None:
     player.join()
     sound.close()
     assert heard.alternatives[0] == "go home"
+
+
+def test_the_microphones_are_those_that_are_plugged_in_now(card: SoundCard) -> None:
+    card.unplug()
+    assert "pulse" not in microphones()
+    card.plug_in()
     assert "pulse" in microphones()
 
 
