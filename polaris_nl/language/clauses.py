@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Literal as OneOf
 
 from polaris_nl.language.grammar import Grammar
-from polaris_nl.language.mention import ASKED, EVERYTHING, SPEAKER, Mention
+from polaris_nl.language.mention import ASKED, EVERYTHING, SPEAKER, SPOKEN_OF, Mention
 from polaris_nl.language.mention_cost import MentionCost
 from polaris_nl.language.template import Parts, Slot, first_words, match
 from polaris_nl.language.verbs import INFLECTED, Inflection, Verbs
@@ -74,6 +74,7 @@ _WORDLESS: Mapping[tuple[str, ...], Mention] = {
     (EVERYTHING,): Mention(0, 0, EVERYTHING, quantifier="all"),
     (SPEAKER,): Mention(0, 0, SPEAKER, pronoun="me"),
     (ASKED,): Mention(0, 0, ASKED),
+    (SPOKEN_OF,): Mention(0, 0, "it", pronoun="it"),
 }
 """What slots that take no words stand for."""
 

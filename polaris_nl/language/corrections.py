@@ -27,6 +27,7 @@ from polaris_nl.language.dialogue import Dialogue, Latest
 from polaris_nl.language.exchange import exchanged, used_in, without
 from polaris_nl.language.expansions import expansions
 from polaris_nl.language.generate import goals_in_words, steps_in_words
+from polaris_nl.language.goal_relations import flat, says_a_place, thing_placed
 from polaris_nl.language.interpretation import Interpretation
 from polaris_nl.language.mention import Mention
 from polaris_nl.language.patterns import Match, Patterns, strip
@@ -162,7 +163,7 @@ class Corrections:
         if question is not None:
             raise question
         if not core.strength:
-            return None
+            return self._taken_back(utterance, core, program, dialogue)
         edited = self._language.edited(utterance, core.tokens, program, dialogue)
         if edited is not None:
             return edited
@@ -299,6 +300,21 @@ class Corrections:
         say = steps_in_words([Step(goals, when, "condition")], self._language.wording)
         return [SetConditional(arrow.id, when), *names], say
 
+    def _taken_back(
+        self, utterance: str, core: Core, program: Automaton, dialogue: Dialogue
+    ) -> MeantThen | None:
+        """`don't go home`, where going home was asked for: that step is gone."""
+        if core.tokens[:2] != _NEVER:
+            return None
+        steps = self._changes.steps(core.tokens, dialogue)
+        if len(steps) != 1 or not steps[0].forbidden or steps[0].when:
+            return None
+        there = [c for c in program.checkpoints if c != START]
+        left = _negated(steps[0].goals, there, program)
+        if left is None:
+            return None
+        return self._applied(utterance, *left, program, dialogue, there)
+
     def _sentence(
         self,
         utterance: str,
@@ -393,9 +409,14 @@ def _without(
 
 
 def _alike(goals: Sequence[Goal], where: Sequence[str], program: Automaton) -> bool:
-    predicates = {g.predicate for g in goals if isinstance(g, Literal)}
-    there = (g for c in where for g in program.checkpoints[c].goals)
-    return any(isinstance(g, Literal) and g.predicate in predicates for g in there)
+    """Whether goals are of the kind of some that are there, or place the same thing."""
+    new = flat(goals)
+    there = flat([g for c in where for g in program.checkpoints[c].goals])
+    moved = {thing_placed(g) for g in new if g.positive and says_a_place(g)}
+    return any(
+        g.predicate in {x.predicate for x in new} or (says_a_place(g) and thing_placed(g) in moved)
+        for g in there
+    )
 
 
 def _negated(

@@ -25,8 +25,11 @@ REASON_WORD_COST = 0.12
 """What it costs to pass over a reason ("so that she can read"), and each of its words."""
 _TOLD_WORDS = 12
 """Words within which what is told of a person ends."""
-_LEADING = frozenset(("otherwise", "else", "and", "then", "finally", "lastly", "next"))
+_LEADING = frozenset(
+    ("otherwise", "else", "and", "then", "finally", "lastly", "next", "afterwards", "last")
+)
 """Words after which a bare name asks for the same with that."""
+_LEADING_PAIRS = (("after", "that"), ("after", "this"), ("of", "all"))
 _PRONOUNS = frozenset(
     {"it", "them", "they", "one", "ones", "these", "those", "that", "both", "him", "her", "there"}
 )
@@ -188,7 +191,8 @@ class Fragments:
 
 def _same_with(tokens: Sequence[str], at: int, mentions: Mentions) -> Iterator[Fragment]:
     """`otherwise the juice`."""
-    if not at or tokens[at - 1] not in _LEADING:
+    before = tuple(tokens[max(0, at - 3) : at])
+    if not (before[-1:] and before[-1] in _LEADING) and before[-2:] not in _LEADING_PAIRS:
         return
     for mention in mentions[at]:
         ends = mention.end == len(tokens) or tokens[mention.end] in (BREAK, COMMA, "and")

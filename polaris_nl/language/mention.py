@@ -17,7 +17,10 @@ SPEAKER = "speaker"
 ASKED = "asked"
 """The type of a slot that takes no words and is asked for: "bring the cup" lacks where to."""
 
-WORDLESS = (EVERYTHING, SPEAKER, ASKED)
+SPOKEN_OF = "spoken-of"
+"""The type of a slot that takes no words and stands for what was spoken of last: "put it inside"."""
+
+WORDLESS = (EVERYTHING, SPEAKER, ASKED, SPOKEN_OF)
 """The types of slots that take no words."""
 
 

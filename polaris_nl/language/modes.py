@@ -15,9 +15,10 @@ Connective = OneOf[
 Mark = Connective | OneOf["assure", "comma", "break"]
 Role = OneOf["goal", "condition", "fact", "topic", "again", "except", "mark", "unknown"]
 Mode = OneOf[
-    "plain", "condition", "after-condition", "either", "state", "negated", "event", "telling"
+    "plain", "assured", "condition", "after-condition", "either", "state", "negated", "event", "telling"
 ]  # fmt: skip
-"""What stands before a position: `either` is "if ..., and", where another condition or a goal can come."""
+"""What stands before a position: `either` is "if ..., and", where another condition or a goal can come;
+`assured` is "make sure ...", where "and" can bring another state that is wished for."""
 
 PRESENT_COST = 0.15
 """What it costs to take "once you go there" for something to do, rather than for a condition."""
@@ -30,9 +31,11 @@ ASSURED_COST = 0.2
 FACT_COST = 0.8
 """What it costs to take a state for something told in passing rather than for a condition or a wish."""
 
-FINAL: tuple[Mode, ...] = ("plain", "after-condition", "either")
-OPEN: tuple[Mode, ...] = ("plain", "either", "after-condition")
+FINAL: tuple[Mode, ...] = ("plain", "assured", "after-condition", "either")
+OPEN: tuple[Mode, ...] = ("plain", "assured", "either", "after-condition")
 """Modes in which a new clause may start."""
+_JOINERS = ("and", "but", COMMA)
+"""Words after which a state can lean on what was said before it."""
 _MARK_MODES: Mapping[str, Mode] = {
     "if": "condition",
     "until": "condition",
@@ -67,11 +70,13 @@ def roles(mode: Mode, clause: Clause, before: str) -> Iterator[tuple[Role, float
         if mode == "plain":
             yield "fact", 0.0, "plain"
     elif clause.kind == "state":
-        yield from _state_roles(mode, clause)
+        yield from _state_roles(mode, clause, before)
     elif clause.kind == "small":
         if mode == "state":
-            yield "goal", 0.0, "plain"
-        if mode == "plain" and before in ("and", "but", COMMA):
+            yield "goal", 0.0, "assured"
+        if mode == "assured" and before in _JOINERS:
+            yield "goal", ASSURED_COST, "assured"
+        if mode == "plain" and before in _JOINERS:
             yield "goal", SMALL_COST, "plain"
     elif clause.kind == "wish":
         if mode in (*OPEN, "state"):
@@ -82,11 +87,13 @@ def roles(mode: Mode, clause: Clause, before: str) -> Iterator[tuple[Role, float
         yield "goal", 0.0, "plain"
 
 
-def _state_roles(mode: Mode, clause: Clause) -> Iterator[tuple[Role, float, Mode]]:
+def _state_roles(mode: Mode, clause: Clause, before: str) -> Iterator[tuple[Role, float, Mode]]:
     if mode in ("condition", "either"):
         yield "condition", 0.0, "after-condition"
     if mode == "state":
-        yield "goal", 0.0, "plain"
+        yield "goal", 0.0, "assured"
+    if mode == "assured" and before in _JOINERS:
+        yield "goal", ASSURED_COST, "assured"
     if mode == "plain" and clause.tellable:
         yield "fact", FACT_COST, "plain"
 
@@ -108,6 +115,8 @@ def after_mark(mode: Mode, mark: Mark) -> Mode | None:
         return mode if mark == "comma" else None
     if mark in _MARK_MODES:
         return _MARK_MODES[mark]
+    if mode == "assured" and mark in ("and", "comma"):
+        return "assured"
     if mode == "after-condition" and mark in ("and", "comma"):
         return "either"
     return "plain"

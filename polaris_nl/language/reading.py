@@ -16,6 +16,8 @@ from polaris_nl.model.formula import Goal, Literal
 VIA = "via"
 """The slot of a wording for what is passed on the way."""
 _FIRST = ("first", "first of all", "beforehand", "before that", "before")
+_BUT_FIRST = "but"
+"""Begins what is to come before the goals in front of it: "close it, but first put the cup in it"."""
 _SEQUELS = ("then", "and then", "after that", "and after that", "afterwards", "and afterwards")
 """Words in front of a condition that keep it where the program has come to."""
 _GOING_ON = (*_SEQUELS[1:], "and finally", "and next", "finally", "after this")
@@ -66,6 +68,7 @@ class _Reader:
         self._branched = branched
         self.done = StepsSoFar(resolver, scope, latest)
         self._sequel = False
+        self._first = False
         self.items = list(items)
         self.at = 0
         self._when: tuple[Literal, ...] = ()
@@ -93,6 +96,7 @@ class _Reader:
             self.done.flush()
             self.done.new_step = True
             self._sequel = item.mark == "then" and item.text in _SEQUELS
+            self._first = bool(self.done.steps) and item.text.split()[:1] == [_BUT_FIRST]
         elif item.mark == "else":
             if self._how == "until":
                 self.finish()
@@ -210,7 +214,11 @@ class _Reader:
             self.at += 1
         behind = bool(self.done.steps) and not self.done.new_step
         late = self.items[self.at - 2].text.split() if self.at > 1 else []
-        if mark == "before" and behind and (self.done.steps[-1].forbidden or "not" in late):
+        if mark == "before" and self._how == "until" and self._when:
+            # "Wait until she comes before you open it": the wait comes first.
+            self.done.steps.append(Step(goals, self._when, "condition", self._waits))
+            self._when, self._how = (), ""
+        elif mark == "before" and behind and (self.done.steps[-1].forbidden or "not" in late):
             # "Don't go home before you have filled it" is "fill it, then go home".
             last = self.done.steps.pop()
             later = replace(last, goals=last.forbidden or last.goals, forbidden=())
@@ -293,7 +301,9 @@ class _Reader:
             self.done.steps.append(Step(goals, forbidden=forbidden))
         else:
             self.done.join(goals)
-        self.done.new_step = False
+        if self._first:
+            self.done.move_to_front()
+        self._first, self.done.new_step = False, False
 
     def _by_way_of(self, item: Item, goals: Sequence[Goal]) -> None:
         """`go to the kitchen via the hall`: the hall is a step before."""

@@ -120,7 +120,7 @@ class StepsSoFar:
             self.steps.append(Step(goals, (), "else"))
             self.otherwise = False
             return
-        if self.steps and not self.are_separate(goals):
+        if self.steps and not self.new_step and not self.are_separate(goals):
             self.join(goals)
         else:
             self.steps.append(Step(goals))
@@ -171,8 +171,9 @@ class StepsSoFar:
         """Whether goals joined by "and" are a step of their own."""
         if not self.steps:
             return True
-        both = (*flat(self.steps[-1].goals), *flat(goals))
-        return any(x.predicate in SEPARATE for x in both)
+        old, new = flat(self.steps[-1].goals), flat(goals)
+        undone = any(x.negation in old for x in new)  # "Open it, fill it and close it."
+        return undone or any(x.predicate in SEPARATE for x in (*old, *new))
 
     def literals(self, item: Item, condition: bool) -> tuple[Literal, ...]:
         """The goals, or the literals of a condition, that an item asks for.
