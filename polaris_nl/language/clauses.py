@@ -262,7 +262,7 @@ _PRONOUN_TYPES: Mapping[str, tuple[str, ...]] = {
     "her": ("person",),
     "him": ("person",),
     "me": ("person",),
-    "there": ("region", "surface"),
+    "there": ("region", "surface", "container"),
 }
 
 

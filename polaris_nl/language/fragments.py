@@ -10,7 +10,7 @@ from polaris_nl.language.clauses import Clause, ClauseFinder
 from polaris_nl.language.common import Common
 from polaris_nl.language.mention import Mention
 from polaris_nl.language.template import Slot, match
-from polaris_nl.language.tokens import BREAK, COMMA
+from polaris_nl.language.tokens import BREAK, COMMA, PhraseSet
 
 AGAIN_COST = 1.0
 BARE_COST = 2.2
@@ -23,6 +23,20 @@ CONTRAST_COST = 0.6
 REASON_COST = 0.6
 REASON_WORD_COST = 0.12
 """What it costs to pass over a reason ("so that she can read"), and each of its words."""
+_OPENERS = PhraseSet(
+    tuple(words.split())
+    for opener in ("could you", "can you", "would you", "will you", "please")
+    for words in (opener, f"so {opener}", f"so {opener} please", f"{opener} please")
+)
+"""Words that begin a request behind what is only told: "my hands are full, could you ..."."""
+_EXCUSING = frozenset(
+    ("is", "are", "am", "'m", "has", "have", "'ve", "had", "can", "could", "do", "does")
+)
+_NO_EXCUSE = frozenset(
+    ("if", "when", "once", "unless", "until", "mind", "changed", "mean", "meant", "said", "wrong")
+    + ("instead", "wait", "stop", "want", "then", "otherwise")
+)
+"""Words that what is only told doesn't have: with them it asks for something, or takes something back."""
 _TOLD_WORDS = 12
 """Words within which what is told of a person ends."""
 _LEADING = frozenset(
@@ -87,6 +101,7 @@ class Fragments:
         yield from self._given_reasons(tokens, at, clauses)
         yield from self._beneficiaries(tokens, at, mentions)
         yield from self._told_of_people(tokens, at, mentions, clauses)
+        yield from self._excuses(tokens, at, mentions, clauses)
 
     def _phrases(self, tokens: Sequence[str], at: int) -> Iterator[tuple[str, ...]]:
         for end in range(min(len(tokens), at + self._longest), at, -1):
@@ -187,6 +202,30 @@ class Fragments:
                     topic = Mention(at, end, " ".join(tokens[at:end]), parts=named)
                     cost = TELLING_COST + REASON_WORD_COST * (end - verb)
                     yield Fragment(end, cost, "topic", topic)
+
+    def _excuses(
+        self, tokens: Sequence[str], at: int, mentions: Mentions, clauses: Clauses
+    ) -> Iterator[Fragment]:
+        """`my hands are full, could you ...`, `... I've got my hands full`: why it is asked for."""
+        first = at == 0 or tokens[at - 1] in (BREAK, COMMA)
+        own = tokens[at] in ("my", "our", "i", "we")
+        people = [m for m in mentions[at] if m.candidates and self._clauses.fits(m, ("person",))]
+        if not own and not (first and people):
+            return
+        verbs = [i for i in range(at + 1, min(at + 4, len(tokens))) if tokens[i] in _EXCUSING]
+        for end in range(verbs[0] + 2, min(at + _TOLD_WORDS, len(tokens)) + 1) if verbs else ():
+            if tokens[end - 1] in _NO_EXCUSE:
+                return
+            ends = end == len(tokens) or tokens[end] == BREAK
+            opener = _OPENERS.length_at(tokens, end + (tokens[end : end + 1] == [COMMA]))
+            asked = end + (tokens[end : end + 1] == [COMMA]) + opener
+            requested = (
+                opener and asked < len(tokens) and any(c.kind == "goal" for c in clauses[asked])
+            )
+            if (first and requested) or (at and own and ends):
+                named = tuple(_named(mentions, at, end))
+                told = Mention(at, end, " ".join(tokens[at:end]), parts=named)
+                yield Fragment(end, TELLING_COST + REASON_WORD_COST * (end - at), "topic", told)
 
 
 def _same_with(tokens: Sequence[str], at: int, mentions: Mentions) -> Iterator[Fragment]:

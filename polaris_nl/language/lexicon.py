@@ -115,6 +115,10 @@ def _phrases(entity: Entity) -> Iterator[tuple[tuple[str, ...], int, str]]:
     noun = phrase(entity.noun) if entity.noun else ()
     if not noun:
         return
+    for synonym in entity.synonyms:  # "Blue mug" makes it a mug.
+        first, *rest = phrase(synonym)
+        if rest and first in entity.adjectives:
+            yield tuple(rest), 2, entity.noun
     yield noun, 2, entity.noun
     for size in range(1, len(entity.adjectives) + 1):
         for some in itertools.permutations(entity.adjectives, size):

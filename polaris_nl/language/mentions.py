@@ -12,6 +12,8 @@ from polaris_nl.language.mention import Mention, Quantifier
 from polaris_nl.language.tokens import BREAK, COMMA, PhraseSet
 
 _SPEAKERS = ("me", "i", "us", "myself", "we")
+THINGS = ("object", "thing", "item", "everything", "anything", "something", "nothing")
+"""Nouns that an adjective can follow: "everything clean"."""
 DESCRIPTIONS = 3
 """Descriptions that can follow each other: "the ball on the floor by the bed in the corner"."""
 _JOINERS = PhraseSet(
@@ -145,6 +147,15 @@ class MentionFinder:
         for place in self._single(tokens, inner + origin) if origin else ():
             if mention.place is None and (not place.pronoun or place.pronoun == "there"):
                 yield replace(_longer(tokens, mention, place.end), place=place)
+        word = tokens[inner] if inner < len(tokens) else ""
+        if word in self._adjectives and (
+            inner > at or mention.quantifier and tokens[at - 1] in THINGS
+        ):
+            # "The dishes that are dirty", "everything clean".
+            yield replace(
+                _longer(tokens, mention, inner + 1),
+                states=(*mention.states, *self._adjectives[word]),
+            )
         # Which things are near others isn't known, so that only describes.
         size = self._beside.length_at(tokens, inner)
         for other in self._single(tokens, inner + size) if size else ():

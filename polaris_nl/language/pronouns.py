@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from polaris_nl.language.entity_types import is_a
 from polaris_nl.language.mention import Mention
-from polaris_nl.language.scope import Meant, Scope, Unclear
+from polaris_nl.language.scope import Meant, Misfit, Scope, Unclear
 from polaris_nl.model.world import World
 
 _PLURAL = (
@@ -21,6 +21,9 @@ _PLURAL = (
     "all of them",
     "everything",
 )
+
+
+_PLACES = ("surface", "container")
 
 
 class Pronouns:
@@ -57,6 +60,8 @@ class Pronouns:
         told = self.message_told(types, scope) if tuple(types) == ("message",) else None
         if told is not None:
             return Meant((told,))
+        if mention.pronoun == "there" and not self._is_place_spoken_of(types, scope):
+            raise Misfit(f'"There" is no {types[0]} here.')
         fitting = [
             r
             for r in reversed(scope.referents)
@@ -81,6 +86,12 @@ class Pronouns:
             return Meant(chosen or tuple(people))
         options = self._spoken(people)
         raise Unclear(f'Who do you mean by "{mention.text}"?', options, mention.text, ("person",))
+
+    def _is_place_spoken_of(self, types: Sequence[str], scope: Scope) -> bool:
+        """Whether the surface or container spoken of last fits: of both, "there" is the later one."""
+        places = (r for r in reversed(scope.referents) if is_a(self._world, r, _PLACES))
+        latest = next(places, None)
+        return latest is None or not set(types) <= set(_PLACES) or is_a(self._world, latest, types)
 
     def message_told(self, types: Sequence[str], scope: Scope) -> str | None:
         """The message that the person spoken of last was told: "once she acknowledges" is about hers."""

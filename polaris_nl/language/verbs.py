@@ -112,7 +112,8 @@ def with_forms(text: str, irregular: Mapping[str, str]) -> str:
                 f"|(is|are|was) not {gerund(base)}|(refuses|fails|forgets|declines) to {base}"
                 f"|never {third_person(base)})"
             )
-        auxiliaries = "has|have|had|'s|will have|has just|have just|has already"
+        # "Is", for "she's acknowledged it" is taken apart like "she's here".
+        auxiliaries = "has|have|had|'s|is|will have|has just|have just|has already"
         return (
             f"({base}|{third_person(base)}|{pasts}|{gerund(base)}|({auxiliaries}) ({pasts})"
             f"|(is|are|was|'s) {gerund(base)}|(to|will|does|did|can|happens to) {base})"
