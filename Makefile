@@ -37,7 +37,7 @@ score-language: $(STAMP) ## how much of what people say is understood, where the
 
 score-speech: $(STAMP) models $(VOICES)/.installed ## how well speech is understood, on a set that synthetic voices speak here
 	@scripts/install-system voices
-	@$(VOICES)/bin/python scripts/make_speech_set.py
+	@PYTHONPATH=. $(VOICES)/bin/python scripts/make_speech_set.py
 	@$(BIN)/python -m bench.score_speech
 
 $(VOICES)/.installed: scripts/voices.txt scripts/find-python

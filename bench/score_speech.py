@@ -7,7 +7,7 @@
 | as typed | the same, of the sentences that are understood rightly when typed |
 | wrong | sentences that led to a program or command that was not meant, and weren't questioned or refused |
 | foreign | sentences meant for somebody else that were taken for the robot's |
-| heard | how many of the former and of the latter, in all voices |
+| heard | how many of the former and of the latter, in the voices that say them |
 
 Settings were chosen by the set's first part; the part that is set aside has a table of its own.
 `--some N` scores every N-th sentence; `--only CONDITION` one condition; `--misses` lists what went wrong.
@@ -24,9 +24,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 
-from bench.speech_audio import CONDITIONS, PARTS, VOICES, Sentence, audio, foreign, sentences
+from bench.speech_audio import CONDITIONS, PARTS, Sentence, audio, foreign, sentences
 from bench.speech_decoding import Decodings, cut
-from bench.speech_meaning import Remembered
+from bench.speech_meaning import Remembered, is_meant
+from bench.speech_voices import VOICES, voices_of
 from polaris_nl.language.understanding import Understanding
 from polaris_nl.model.world_file import load_world
 from polaris_nl.speech.activity import SileroActivity
@@ -134,7 +135,7 @@ def score(order: tuple[Task, tuple[str, ...]]) -> list[Score]:
     sentence = task.sentence
     sounds = cut(audio(sentence.text, task.voice, task.condition), _activity())
     context = _context(task.world, sentence.after)
-    typed_right = context.meaning(sentence.text) == sentence.expect
+    typed_right = is_meant(context.meaning(sentence.text), sentence.expect, sentence.text)
     return [
         _scored(task, system, _hear(system, task, sounds, context), context, typed_right)
         for system in systems
@@ -145,7 +146,7 @@ def _scored(
     task: Task, system: str, said: Utterance, context: Remembered, typed_right: bool
 ) -> Score:
     meaning = context.meaning(said.text) if said.accepted else "refused"
-    right = meaning == task.sentence.expect
+    right = is_meant(meaning, task.sentence.expect, task.sentence.text)
     note = f" ({said.why_not})" if said.why_not else f" <- {said.repaired}" * bool(said.repaired)
     return Score(
         task=task,
@@ -162,19 +163,17 @@ def _scored(
 
 
 def tasks(part: str, some: int, conditions: Sequence[str], voices: Sequence[str]) -> Iterator[Task]:
-    """Everything of a part that is to be heard: clean in every voice, with noise in two that take turns."""
+    """Everything of a part that is to be heard: clean in all its voices, with noise in one, taking turns."""
     for condition in conditions:
         turn = CONDITIONS.index(condition)
         for number, sentence in enumerate((*sentences(part), *foreign(part))):
             if number % some:
                 continue
-            both = {
-                VOICES[(number + turn) % len(VOICES)],
-                VOICES[(number + turn + 2) % len(VOICES)],
-            }
+            said_by = voices_of(sentence.text)
+            taking_turns = said_by[(number + turn) % len(said_by)]
             world = sentence.world or WORLDS[number // some % 2]
-            for voice in voices:
-                if condition == "clean" or voice in both:
+            for voice in said_by:
+                if voice in voices and (condition == "clean" or voice == taking_turns):
                     yield Task(sentence, world, voice, condition)
 
 

@@ -13,11 +13,10 @@ import numpy
 import soundfile
 import yaml
 
+from bench.speech_voices import sound_file, voices_of
 from polaris_nl.speech.audio import RATE
 
 SET = Path(__file__).parent / "speech_set"
-FOLDER = Path.home() / ".cache" / "polaris-nl" / "speech-set"
-VOICES = ("heart", "joe", "slt", "rms", "kumo")
 CONDITIONS = ("clean", "kitchen 20 dB", "babble 20 dB", "kitchen 10 dB", "babble 10 dB")
 PARTS = {
     "tuned on": ("sentences.yaml", "foreign.txt"),
@@ -62,11 +61,10 @@ def audio(text: str, voice: str, condition: str) -> bytes:
 
     Args:
         text: the sentence.
-        voice: one of VOICES.
+        voice: one of those that say it.
         condition: one of CONDITIONS.
     """
-    name = hashlib.sha256(text.encode()).hexdigest()[:16]
-    samples = _samples(FOLDER / voice / f"{name}.flac")
+    samples = _samples(sound_file(text, voice))
     kind, _, rest = condition.partition(" ")
     if rest:
         seed = int(hashlib.sha256(f"{voice} {text} {condition}".encode()).hexdigest()[:8], 16)
@@ -117,13 +115,12 @@ def _babble(length: int, random: numpy.random.Generator) -> Any:
     """Six people talking about something else."""
     said = [s.text for s in foreign(next(iter(PARTS)))[:BABBLED]]
     total = numpy.zeros(length, dtype="float64")
-    for _ in range(6):
+    for who in range(6):
         own = numpy.zeros(0, dtype="float32")
-        voice = VOICES[int(random.integers(len(VOICES)))]
         while len(own) < length + RATE:
             text = said[int(random.integers(len(said)))]
-            name = hashlib.sha256(text.encode()).hexdigest()[:16]
-            own = numpy.concatenate([own, _samples(FOLDER / voice / f"{name}.flac")])
+            voice = voices_of(text)[who % len(voices_of(text))]
+            own = numpy.concatenate([own, _samples(sound_file(text, voice))])
         start = int(random.integers(0, len(own) - length))
         total += own[start : start + length]
     return total

@@ -7,7 +7,8 @@ import json
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from bench.speech_audio import FOLDER, blocks
+from bench.speech_audio import blocks
+from bench.speech_voices import FOLDER
 from polaris_nl.speech.activity import Activity, Cutter
 from polaris_nl.speech.recogniser import Decoded, Decoder
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import hashlib
 import json
+import re
 from collections.abc import Iterable, Sequence
 from functools import cache
 from pathlib import Path
 
-from bench.speech_audio import FOLDER
+from bench.speech_voices import FOLDER
 from polaris_nl.automaton.automaton import START, Automaton
 from polaris_nl.automaton.edits import apply_all
 from polaris_nl.hands_free.weight import weight_of
@@ -117,6 +118,39 @@ def _language() -> str:
     for file in (*files, Path(__file__), root / "polaris_nl/hands_free/weight.py"):
         digest.update(file.read_bytes())
     return digest.hexdigest()
+
+
+def is_meant(meaning: str, expected: str, said: str) -> bool:
+    """Whether an utterance led to what was meant by it.
+
+    "A and B" may be one checkpoint or a sequence (DESIGN 5.10), unless words of order are said, too.
+    """
+    words = said.split()
+    either = "and" in words and not any(word in _ORDER for word in words)
+    return meaning == expected or (either and _joined(meaning) == _joined(expected))
+
+
+_ORDER = (
+    "then",
+    "after",
+    "before",
+    "first",
+    "next",
+    "finally",
+    "last",
+    "afterwards",
+    "once",
+    "when",
+)
+_STEP = re.compile(r"\[((?!when |else)[^\[\]]*) \[((?!when |else)[^\[\]]*)\]\]")
+
+
+def _joined(line: str) -> str:
+    """A program line with steps that simply follow each other put into one, goals in order."""
+    joined = _STEP.sub(lambda m: f"[{m[1]} & {m[2]}]", line)
+    if joined != line:
+        return _joined(joined)
+    return re.sub(r"\[([^\[\]]*)\]", lambda m: f"[{' & '.join(sorted(m[1].split(' & ')))}]", line)
 
 
 def program_line(automaton: Automaton) -> str:

@@ -1,4 +1,4 @@
-"""Speaks the speech set with five synthetic voices, into the user's cache; what is there already is kept.
+"""Speaks the speech set in synthetic voices, into the user's cache; what is there already is kept.
 
 Run by `make score-speech`, in an environment of its own with the packages below, none of which is a
 dependency of the project.
@@ -14,7 +14,6 @@ dependency of the project.
 
 from __future__ import annotations
 
-import hashlib
 import json
 import multiprocessing
 import os
@@ -30,6 +29,8 @@ import numpy
 import soundfile
 import soxr
 import yaml
+
+from bench.speech_voices import sound_file, voices_of
 
 RATE = 16_000
 EDGE_S = 0.4
@@ -52,13 +53,12 @@ def main() -> None:
 def _speak(order: tuple[str, int, int]) -> tuple[str, int]:
     """Speaks what is missing of a share of the set in one voice; the voice, and how much it was."""
     name, share, shares = order
-    folder = Path.home() / ".cache" / "polaris-nl" / "speech-set"
-    mine = list(texts())[share::shares]
-    missing = [text for text in mine if not place(folder, name, text).exists()]
+    mine = [text for text in texts() if name in voices_of(text)][share::shares]
+    missing = [text for text in mine if not sound_file(text, name).exists()]
     voice = VOICES[name]() if missing else None
     for text in missing:
         assert voice is not None
-        _write(place(folder, name, text), *voice(text))
+        _write(sound_file(text, name), *voice(text))
     return name, len(missing)
 
 
@@ -69,11 +69,6 @@ def texts() -> Iterator[str]:
             yield from group["say"]
     for name in ("foreign.txt", "foreign_aside.txt"):
         yield from (SET / name).read_text(encoding="utf-8").splitlines()
-
-
-def place(folder: Path, voice: str, text: str) -> Path:
-    """Where a sentence in a voice is kept."""
-    return folder / voice / f"{hashlib.sha256(text.encode()).hexdigest()[:16]}.flac"
 
 
 def _write(path: Path, samples: Any, rate: int) -> None:

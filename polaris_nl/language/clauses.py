@@ -19,6 +19,7 @@ _KINDS: Mapping[str, tuple[Kind, bool, float]] = {
     "goals": ("goal", True, 1.0),
     "not-goals": ("goal", False, 1.0),
     "asks": ("goal", True, 1.6),
+    "seeks": ("goal", True, 1.3),
     "states": ("state", True, 1.0),
     "not-states": ("state", False, 1.0),
     "wished-states": ("wish", True, 1.0),
@@ -45,6 +46,7 @@ class Clause:
         bindings: the parameter's name (without `?`) and what was said for it.
         cost: how much speaks against it.
         form: how the verb of an imperative stands: "fill it", "filling it", "(you have) filled it".
+        seeks: asks for a thing only on the way to something else: "find it and bring it here".
         tellable: whether people tell of such states in passing; what they answer is never said so.
     """
 
@@ -57,10 +59,12 @@ class Clause:
     cost: float
     form: Inflection = "base"
     tellable: bool = False
+    seeks: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class _Form:
+    key: str
     predicate: str
     kind: Kind
     positive: bool
@@ -104,7 +108,7 @@ class ClauseFinder:
             for key, templates in phrases.wordings.items():
                 kind, positive, cost = _KINDS[key]
                 for template in templates:
-                    yield _Form(name, kind, positive, cost, template, types)
+                    yield _Form(key, name, kind, positive, cost, template, types)
 
     def at(
         self,
@@ -210,6 +214,7 @@ class ClauseFinder:
             cost,
             inflection,
             "message" not in {kind for types in form.types.values() for kind in types},
+            form.key == "seeks",
         )
 
     def fits(self, mention: Mention, types: Sequence[str]) -> bool:

@@ -33,9 +33,11 @@ _EXCUSING = frozenset(
     ("is", "are", "am", "'m", "has", "have", "'ve", "had", "can", "could", "do", "does")
 )
 _NO_EXCUSE = frozenset(
-    ("if", "when", "once", "unless", "until", "mind", "changed", "mean", "meant", "said", "wrong")
-    + ("instead", "wait", "stop", "want", "then", "otherwise")
-)
+    (
+        "if", "when", "once", "unless", "until", "mind", "changed", "mean", "meant", "said", "wrong", "instead",
+        "wait", "stop", "want", "then", "otherwise",
+    )
+)  # fmt: skip
 """Words that what is only told doesn't have: with them it asks for something, or takes something back."""
 _TOLD_WORDS = 12
 """Words within which what is told of a person ends."""

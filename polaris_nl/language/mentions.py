@@ -148,9 +148,8 @@ class MentionFinder:
             if mention.place is None and (not place.pronoun or place.pronoun == "there"):
                 yield replace(_longer(tokens, mention, place.end), place=place)
         word = tokens[inner] if inner < len(tokens) else ""
-        if word in self._adjectives and (
-            inner > at or mention.quantifier and tokens[at - 1] in THINGS
-        ):
+        every = bool(mention.quantifier) and tokens[at - 1] in THINGS
+        if word in self._adjectives and (inner > at or every):
             # "The dishes that are dirty", "everything clean".
             yield replace(
                 _longer(tokens, mention, inner + 1),

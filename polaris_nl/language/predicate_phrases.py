@@ -15,7 +15,7 @@ from polaris_nl.model.formula import Variable
 from polaris_nl.model.text import listed
 from polaris_nl.model.yaml_lines import Lined
 
-WORDINGS = ("goals", "not-goals", "states", "not-states", "asks", "told", "ellipsis")
+WORDINGS = ("goals", "not-goals", "states", "not-states", "asks", "seeks", "told", "ellipsis")
 TEXTS = ("fact", "not-fact", "goal", "not-goal", "event", "not-event", "name", "not-name")
 BE = "<be>"
 """The list of the forms of "be", which are exchanged where a state is wished for or denied."""

@@ -78,6 +78,8 @@ class Resolver:
                 chosen.append(self._answered(parameter, scope))
                 continue
             meant = self.meant(bound, parameter.types, scope, condition)
+            if parameter.types == ("message",):
+                scope = scope.after(self._named_in(bound))
             scope = scope.after(meant.entities)
             chosen.append(meant)
             if bound.text == "nothing" and clause.kind == "goal" and not condition:
@@ -94,6 +96,15 @@ class Resolver:
             )
             goals += self._said_of(mention, parameter_types, scope, condition)
         return tuple(dict.fromkeys(goals)), scope
+
+    def _named_in(self, message: Mention) -> tuple[str, ...]:
+        """The things that a message names: "tell her that her pills are due and bring them to her"."""
+        said = f" {message.text} "
+        return tuple(
+            thing.name
+            for thing in self._world.of_type("object")
+            if any(f" {name} " in said for name in (thing.spoken, *thing.synonyms))
+        )
 
     def _all_there(self, clause: Clause, parameter: Variable, scope: Scope) -> Meant:
         """Everything of which a clause holds: "clear the table" is about all that is on it."""

@@ -255,7 +255,8 @@ class Understanding:
         if not tokens:
             return False
         found = self._clauses.at(tokens, 0, self.mentions(tokens))
-        return any(c.kind == "goal" and c.form == "base" and c.end == len(tokens) for c in found)
+        whole = (c for c in found if c.kind == "goal" and c.end == len(tokens))
+        return any(c.form == "base" and not c.seeks for c in whole)
 
     def cuts(self, tokens: Sequence[str]) -> list[Cut]:
         """The best ways to cut tokens into clauses."""

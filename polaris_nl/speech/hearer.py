@@ -15,7 +15,7 @@ from polaris_nl.speech.weight import Weigh, Weight
 
 QUICK = {"stop": "stop", "pause": "pause"}
 """Words that act before the speaker has ended, and what they command."""
-WHOLE_S, ENOUGH_S, PARTLY_S, MORE_S = 0.35, 0.4, 0.8, 1.1
+WHOLE_S, ENOUGH_S, PARTLY_S, MORE_S = 0.35, 0.35, 0.8, 1.1
 """Silence that ends a piece whose words are a short command, are a goal, would be asked about (as the first
 half of a longer sentence is), or don't make sense yet."""
 SHORT = 3
