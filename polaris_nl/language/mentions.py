@@ -12,7 +12,7 @@ from polaris_nl.language.mention import Mention, Quantifier
 from polaris_nl.language.tokens import BREAK, COMMA, PhraseSet
 
 _SPEAKERS = ("me", "i", "us", "myself", "we")
-THINGS = ("object", "thing", "item", "everything", "anything", "something", "nothing")
+THINGS = ("object", "thing", "item", "everything", "whatever", "anything", "something", "nothing")
 """Nouns that an adjective can follow: "everything clean"."""
 DESCRIPTIONS = 3
 """Descriptions that can follow each other: "the ball on the floor by the bed in the corner"."""

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Literal as OneOf
 
 from polaris_nl.language.clauses import Clause
-from polaris_nl.language.tokens import COMMA
+from polaris_nl.language.tokens import BREAK, COMMA
 
 Connective = OneOf[
     "and", "or", "then", "if", "until", "unless", "else", "not", "before", "done", "purpose", "given",
@@ -76,7 +76,8 @@ def roles(mode: Mode, clause: Clause, before: str) -> Iterator[tuple[Role, float
             yield "goal", 0.0, "assured"
         if mode == "assured" and before in _JOINERS:
             yield "goal", ASSURED_COST, "assured"
-        if mode == "plain" and before in _JOINERS:
+        alone = before in ("", BREAK) and len(clause.bindings) == 1  # "Fridge shut, please."
+        if mode == "plain" and (before in _JOINERS or alone):
             yield "goal", SMALL_COST, "plain"
     elif clause.kind == "wish":
         if mode in (*OPEN, "state"):

@@ -167,6 +167,9 @@ class _Reader:
             self._attach(previous, when, mark)
         elif mark == "unless":
             self._unless = when
+        elif self._how_said == "before" and one_at_a_time(when):
+            # "Before you go to the kitchen, close it" is about the robot's own acts.
+            self.done.deferred = when
         else:
             self.finish()
             self._when, self._how = when, mark

@@ -174,7 +174,8 @@ class Builder:
         """Where the way to here branched on a condition about the same things."""
         about = _subjects(when)
         for transition in reversed(self.program.path(self.here)):
-            if about & _subjects(transition.when):
+            ways = self.program.outgoing(transition.source)
+            if about & {s for way in ways for s in _subjects(way.when)}:
                 return transition.source
         return None
 
