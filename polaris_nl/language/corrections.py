@@ -27,18 +27,18 @@ from polaris_nl.language.dialogue import Dialogue, Latest
 from polaris_nl.language.exchange import exchanged, used_in, without
 from polaris_nl.language.expansions import expansions
 from polaris_nl.language.generate import goals_in_words, steps_in_words
-from polaris_nl.language.goal_relations import flat, says_a_place, thing_placed
 from polaris_nl.language.interpretation import Interpretation
 from polaris_nl.language.mention import Mention
 from polaris_nl.language.patterns import Match, Patterns, strip
 from polaris_nl.language.protocol import Language
 from polaris_nl.language.references import References, meant
 from polaris_nl.language.rereading import Rereading
+from polaris_nl.language.retractions import negated, place_of
 from polaris_nl.language.scope import Misfit, Unclear
 from polaris_nl.language.structure import Step
-from polaris_nl.language.tokens import BREAK, COMMA
+from polaris_nl.language.tokens import BREAK, COMMA, words
 from polaris_nl.model.errors import EditError
-from polaris_nl.model.formula import Goal, Literal
+from polaris_nl.model.formula import Literal
 from polaris_nl.model.text import listed, sentence
 
 _LEADS = {"correct-lead": 2, "correct-aside": 1, "correct-tail": 1, "correct-noise": 0}
@@ -48,6 +48,7 @@ _MORE = ("also", "too", "as well", "again")
 _WAITED = ("until", "till", "for", "here", "there")
 """Words behind "wait" that make it something to do."""
 _NEVER = ("do", "not")
+_ONLY = "only"
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,7 +164,9 @@ class Corrections:
         if question is not None:
             raise question
         if not core.strength:
-            return self._taken_back(utterance, core, program, dialogue)
+            if core.tokens[:2] == _NEVER:
+                return self._taken_back(utterance, core, program, dialogue)
+            return self._limited(utterance, core, program, dialogue)
         edited = self._language.edited(utterance, core.tokens, program, dialogue)
         if edited is not None:
             return edited
@@ -300,20 +303,42 @@ class Corrections:
         say = steps_in_words([Step(goals, when, "condition")], self._language.wording)
         return [SetConditional(arrow.id, when), *names], say
 
+    def _limited(
+        self, utterance: str, core: Core, program: Automaton, dialogue: Dialogue
+    ) -> MeantThen | None:
+        """`only go home if she dismisses it`, where going home was asked for anyway: now it waits for that."""
+        if _ONLY not in words(utterance):
+            return None
+        steps = self._changes.steps(core.tokens, dialogue)
+        if len(steps) != 1 or not steps[0].when or not steps[0].goals:
+            return None
+        for arrow in reversed(list(program.transitions.values())):
+            if not arrow.when and set(program.checkpoints[arrow.target].goals) == set(
+                steps[0].goals
+            ):
+                say = steps_in_words(steps, self._language.wording)
+                edit = SetConditional(arrow.id, steps[0].when)
+                return self._applied(utterance, [edit], say, program, dialogue, [arrow.target])
+        return None
+
     def _taken_back(
         self, utterance: str, core: Core, program: Automaton, dialogue: Dialogue
     ) -> MeantThen | None:
-        """`don't go home`, where going home was asked for: that step is gone."""
-        if core.tokens[:2] != _NEVER:
-            return None
-        steps = self._changes.steps(core.tokens, dialogue)
-        if len(steps) != 1 or not steps[0].forbidden or steps[0].when:
-            return None
+        """`don't go home, go to the kitchen`, where going home was asked for: that step is gone, or another."""
         there = [c for c in program.checkpoints if c != START]
-        left = _negated(steps[0].goals, there, program)
-        if left is None:
-            return None
-        return self._applied(utterance, *left, program, dialogue, there)
+        for end in range(len(core.tokens), 2, -1):
+            steps = self._changes.steps(core.tokens[:end], dialogue)
+            if len(steps) != 1 or not steps[0].forbidden or steps[0].when:
+                continue
+            left = negated(steps[0].goals, there, program)
+            rest = _trimmed(core.tokens[end:])
+            if left is None:
+                return None
+            if not rest:
+                return self._applied(utterance, *left, program, dialogue, there)
+            touched = [e.checkpoint for e in left[0] if isinstance(e, RemoveCheckpoint | SetGoals)]
+            return self._sentence(utterance, Core(tuple(rest), 2), touched, program, dialogue)
+        return None
 
     def _sentence(
         self,
@@ -329,20 +354,26 @@ class Corrections:
         if not steps:
             return None
         step = steps[0]
-        if core.strength < 2 and not _alike(step.goals, touched, program):
+        target = place_of(step.goals, touched, program)
+        if core.strength < 2 and target is None:
             return None
         if core.tokens[:2] == _NEVER:
-            left = _negated(step.goals, touched, program)
+            left = negated(step.goals, touched, program)
             if left is not None:
                 return self._applied(utterance, *left, program, dialogue, touched)
         if len(steps) > 1 or step.role == "else":
             return self._again.said(utterance, core.tokens, program, dialogue)
-        target = next(
-            (c for c in reversed(touched) if _alike(step.goals, [c], program)), touched[-1]
-        )
+        target = target or touched[-1]
         incoming = program.incoming(target)
         if incoming is None or not step.goals:
             return None
+        if (
+            core.strength < 2
+            and step.when
+            and incoming.when
+            and set(step.when) != set(incoming.when)
+        ):
+            return None  # "If she dismisses it, take it to the desk instead" is another way on.
         when = step.when or incoming.when
         edits: list[Edit] = []
         if set(program.checkpoints[target].goals) != set(step.goals):
@@ -398,38 +429,11 @@ def _without(
     tokens: Sequence[str], phrases: Sequence[tuple[str, ...]], behind: bool
 ) -> list[str] | None:
     """Tokens without the longest of some phrases at an end, or None; never nothing at all."""
-    for words in phrases:
-        size = len(words)
+    for phrase in phrases:
+        size = len(phrase)
         end = tuple(tokens[-size:]) if behind else tuple(tokens[:size])
-        if size and end == words:
+        if size and end == phrase:
             if len(tokens) <= size or (not behind and tokens[size] in _WAITED):
                 return None
             return list(tokens[:-size] if behind else tokens[size:])
-    return None
-
-
-def _alike(goals: Sequence[Goal], where: Sequence[str], program: Automaton) -> bool:
-    """Whether goals are of the kind of some that are there, or place the same thing."""
-    new = flat(goals)
-    there = flat([g for c in where for g in program.checkpoints[c].goals])
-    moved = {thing_placed(g) for g in new if g.positive and says_a_place(g)}
-    return any(
-        g.predicate in {x.predicate for x in new} or (says_a_place(g) and thing_placed(g) in moved)
-        for g in there
-    )
-
-
-def _negated(
-    goals: Sequence[Goal], touched: Sequence[str], program: Automaton
-) -> tuple[list[Edit], str] | None:
-    """Goals that were asked for are taken back: "no, don't open the drawer"."""
-    wrong = {g.negation for g in goals if isinstance(g, Literal)}
-    for checkpoint in reversed(touched):
-        there = program.checkpoints[checkpoint].goals
-        kept = tuple(g for g in there if g not in wrong)
-        name = program.checkpoints[checkpoint].name
-        if kept and kept != there:
-            return [SetGoals(checkpoint, kept)], f"{name} is without that now"
-        if kept != there:
-            return [RemoveCheckpoint(checkpoint)], f"{name} is gone"
     return None

@@ -75,6 +75,8 @@ class Lexicon:
         for entity in world.entities.values():
             for words, rank, kind in _phrases(entity):
                 _add(drafts, words, entity.name, rank, kind)
+        for words, name in _by_region(world):
+            _add(drafts, words, name, 1, "")
         for kind, members in world.kinds.items():
             for name in sorted(members):
                 _add(drafts, phrase(kind), name, 2, kind)
@@ -134,6 +136,18 @@ def _phrases(entity: Entity) -> Iterator[tuple[tuple[str, ...], int, str]]:
             adjectives = tuple(w for a in some for w in phrase(a))
             yield (*adjectives, *noun), 1, ""
             yield (*adjectives, "one"), 2, ""
+
+
+def _by_region(world: World) -> Iterator[tuple[tuple[str, ...], str]]:
+    """`kitchen worktop`, `pantry shelf`: what stands somewhere, by the name of the room before its own."""
+    for fact in sorted(world.facts):
+        if fact.predicate != "located":
+            continue
+        thing, region = (world.entities[name] for name in fact.args)
+        for name in filter(None, (thing.spoken, thing.noun)):
+            for room in (region.spoken, *region.synonyms):
+                if not {*phrase(room)} & {*phrase(name)}:
+                    yield (*phrase(room), *phrase(name)), thing.name
 
 
 def _add(

@@ -109,6 +109,10 @@ def _answer(
     return Interpretation(utterance, "answer", query=query), after
 
 
+_WHO = tuple((word,) for word in ("i", "you", "we", "they", "these", "those", "both"))
+"""Who stands behind "have" in a question."""
+
+
 class _Reader:
     """Reads one question about a program."""
 
@@ -143,6 +147,8 @@ class _Reader:
             raise unclear
         if tokens[0] in SET_WORDS:
             return self.facts.which(tokens)
+        if tokens[0] == "have" and tokens[1:2] not in _WHO and "been" not in tokens:
+            return None  # "Have the fridge opened" asks for it.
         if tokens[0] in AUXILIARIES or tokens[0] in DOING:
             return self.facts.inverted(tokens)
         return None
