@@ -19,7 +19,7 @@ _KINDS: Mapping[str, tuple[Kind, bool, float]] = {
     "goals": ("goal", True, 1.0),
     "not-goals": ("goal", False, 1.0),
     "asks": ("goal", True, 1.6),
-    "seeks": ("goal", True, 1.3),
+    "seeks": ("goal", True, 2.5),
     "states": ("state", True, 1.0),
     "not-states": ("state", False, 1.0),
     "wished-states": ("wish", True, 1.0),

@@ -95,8 +95,14 @@ class Corrections:
         self._patterns = Patterns(rest, references, common.numbers)
         self._choosing = Choosing(language)
         self._again = Rereading(language, references)
-        # "Go" is a filler in "go and open it", and the verb in "no, go to the kitchen".
-        self._fillers = [f for f in common.fillers if len(f) > 1 or f[0] not in references.verbs]
+        # "Go" is a filler in "go and open it", and the verb in "no, go to the kitchen"; "would you mind"
+        # decides how its verb stands, and "instead" what is replaced.
+        needed = {("instead",), *common.connectives["polite"]}
+        self._fillers = [
+            f
+            for f in common.fillers
+            if f not in needed and (len(f) > 1 or f[0] not in references.verbs)
+        ]
 
     def core(self, tokens: Sequence[str]) -> Core:
         """An utterance without "no, I meant" in front of it, "instead" behind it, and the like."""

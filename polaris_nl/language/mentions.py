@@ -141,6 +141,8 @@ class MentionFinder:
         if tokens[at : at + 1] in (["of"], ("of",)):
             yield from self._of(tokens, mention)
         inner = at + self._which.length_at(tokens, at)
+        if tokens[at - 1] == "whatever" and tokens[at : at + 1] in (["is"], ("is",)):
+            inner = at + 1
         origin = self._from.length_at(tokens, inner)
         if not origin and inner < len(tokens) and tokens[inner] in ("on", "in", "at", "inside"):
             origin = 1

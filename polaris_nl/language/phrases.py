@@ -19,13 +19,13 @@ from polaris_nl.model.domain import Predicate
 from polaris_nl.model.text import plural_of
 from polaris_nl.model.world import Entity, World
 
-MOST, PLAIN = 20_000, 6_000
+MOST, PLAIN = 28_000, 7_000
 """Phrases of all, and of plain ones."""
 PER_CHOICE = 2
 """How often each choice of a wording occurs, where there is room."""
 OFTEN = 4
 """After so many names comes a pronoun again: no name is said as often."""
-COMPOSED = 4_000
+COMPOSED = 5_000
 """Phrases of two clauses, so that the ways from one clause into the next are heard too."""
 
 _Names = Mapping[str, Sequence[tuple[str, ...]]]
@@ -55,11 +55,13 @@ _SOFTENERS: tuple[tuple[str, ...], ...] = ((), (), ("just",), ("please",), ("the
 
 
 def recogniser_phrases(world: World, grammar: Grammar) -> tuple[str, ...]:
-    """At most MOST phrases in a fixed order: controls, names, plain clauses, all, pairs."""
+    """At most MOST phrases in a fixed order: controls, names, plain clauses, all, rare words, pairs."""
     maker = _Maker(world, grammar)
     found = dict.fromkeys(_text(words) for words in maker.fixed())
     clauses = maker.clauses(MOST - len(found) - COMPOSED - PLAIN)
-    for words in itertools.chain(maker.plain(), clauses, maker.composed()):
+    for words in itertools.chain(maker.plain(), clauses):
+        found[_text(words)] = None
+    for words in itertools.chain(maker.rare(found), maker.composed()):
         found[_text(words)] = None
         if len(found) >= MOST:
             break
@@ -153,6 +155,26 @@ class _Maker:
                 lead = self._ifs[number % len(self._ifs)] if source.kind == "states" else ()
                 yield (*lead, *words)
 
+    def rare(self, found: Iterable[str]) -> Iterator[Sequence[str]]:
+        """A phrase for every word of a wording that hasn't come up."""
+        known = {word for text in found for word in text.split()}
+        for source in self._sources:
+            for word in sorted(_words_in(source.parts) - known):
+                known.add(word)
+                words = self._through(source.parts.parts, source, word)
+                yield (*self._ifs[0], *words) if source.kind in ("states", "not-states") else words
+
+    def _through(self, parts: Sequence[Part], source: _Source, word: str) -> list[str]:
+        """A phrase of a wording that has a certain word."""
+        words: list[str] = []
+        for part in parts:
+            if isinstance(part, Choice):
+                option = next((o for o in part.options if word in _words_in(o)), part.options[0])
+                words.extend(self._through(option.parts, source, word))
+            else:
+                words.extend(self._pick([part], source, len(words)))
+        return words
+
     def composed(self) -> Iterator[Sequence[str]]:
         """Two clauses at a time: "if E, G" and "G then G"."""
         events = [s for s in self._sources if s.kind == "states"]
@@ -223,6 +245,17 @@ class _Maker:
                         found.append(pronouns[number // OFTEN % len(pronouns)])
             self._fillers[kinds] = found
         return self._fillers[kinds]
+
+
+def _words_in(parts: Parts) -> set[str]:
+    """All words of a wording, whatever is chosen."""
+    found: set[str] = set()
+    for part in parts.parts:
+        if isinstance(part, Word):
+            found.add(part.text)
+        elif isinstance(part, Choice):
+            found = found.union(*(_words_in(option) for option in part.options))
+    return found
 
 
 def _called(entity: Entity) -> Iterator[tuple[str, ...]]:

@@ -16,6 +16,8 @@ from polaris_nl.model.formula import Goal, Literal
 VIA = "via"
 """The slot of a wording for what is passed on the way."""
 _FIRST = ("first", "first of all", "beforehand", "before that", "before")
+_LATER = ("afterwards", "after that", "and afterwards", "later", "thereafter", "subsequently")
+"""Behind a goal, these make it a step of its own: "put it in and close it afterwards"."""
 _BUT_FIRST = "but"
 """Begins what is to come before the goals in front of it: "close it, but first put the cup in it"."""
 _SEQUELS = ("then", "and then", "after that", "and after that", "afterwards", "and afterwards")
@@ -90,6 +92,8 @@ class _Reader:
             self._ordered(item.mark)
         elif item.mark == "then" and item.text in _FIRST and self._at_an_end():
             self.done.move_to_front()
+        elif item.mark == "then" and item.text in _LATER and self._at_an_end():
+            self.done.put_off()
         elif item.mark in ("then", "break"):
             if item.mark == "break":
                 self.done.sentence = len(self.done.steps)
@@ -306,6 +310,7 @@ class _Reader:
             self.done.join(goals)
         if self._first:
             self.done.move_to_front()
+        self.done.sought = item.clause is not None and item.clause.seeks
         self._first, self.done.new_step = False, False
 
     def _by_way_of(self, item: Item, goals: Sequence[Goal]) -> None:

@@ -36,6 +36,7 @@ class StepsSoFar:
         otherwise: what comes next is what happens otherwise.
         sentence: the number of steps before the sentence that is being read.
         deferred: goals that come after those of the sentence: "before you go home, ...".
+        sought: the latest goals were only to find a thing.
     """
 
     resolver: Resolver
@@ -46,6 +47,8 @@ class StepsSoFar:
     otherwise: bool = False
     sentence: int = 0
     deferred: tuple[Goal, ...] = ()
+    sought: bool = False
+    _joined: tuple[Goal, ...] = ()
 
     def move_to_front(self) -> None:
         """The latest step comes before the others of its sentence."""
@@ -53,9 +56,18 @@ class StepsSoFar:
         self.steps = [*before[: self.sentence], last, *before[self.sentence :]]
         self.new_step = True
 
+    def put_off(self) -> None:
+        """The goals that were added last are a step of their own, after the others."""
+        last = self.steps[-1]
+        earlier = tuple(g for g in last.goals if g not in self._joined)
+        if self._joined and earlier:
+            self.steps[-1:] = [replace(last, goals=earlier), Step(self._joined)]
+        self.new_step = True
+
     def join(self, goals: tuple[Goal, ...]) -> None:
         """Adds goals to the latest step."""
         last = self.steps[-1]
+        self._joined = goals
         self.steps[-1] = replace(last, goals=tuple(dict.fromkeys((*last.goals, *goals))))
 
     def flush(self) -> None:
@@ -155,7 +167,7 @@ class StepsSoFar:
     def is_hint(self, item: Item, goals: Sequence[Goal]) -> bool:
         """Whether a wish only says where to look: "find the pen, it should be on the nightstand"."""
         sought = (
-            {x.args for x in flat(self.steps[-1].goals) if x.predicate in SOUGHT}
+            {x.args for x in flat(self.steps[-1].goals) if x.predicate in SOUGHT or self.sought}
             if self.steps
             else set()
         )

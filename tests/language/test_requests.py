@@ -1,0 +1,46 @@
+"""Requests as people would say them, written by those who knew the worlds and not the grammar.
+
+Each stands with the program, question, answer or command that it asks for. They were read afterwards, and
+what was missing in the grammar was added by kinds; what that is worth for other sentences is shown by the
+part of the speech set that is set aside.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from functools import cache
+from pathlib import Path
+
+import pytest
+import yaml
+
+from bench.speech_meaning import Context, is_meant
+from polaris_nl.language.understanding import Understanding
+from polaris_nl.model.world_file import load_world
+
+FOLDER = Path(__file__).parent / "requests"
+RIGHT, WRONG = 0.92, 0.02
+
+
+@cache
+def understanding(world: str) -> Understanding:
+    return Understanding(load_world(world))
+
+
+def outcome(context: Context, said: str, expected: str) -> str:
+    _, meaning = context.understood(said)
+    if is_meant(meaning, expected, said):
+        return "right"
+    return "wrong" if meaning.startswith(("start", "command")) else "refused or asked"
+
+
+@pytest.mark.parametrize("name", ["care", "hands-full", "visitors", "programmers"])
+def test_requests_are_understood(name: str) -> None:
+    found: Counter[str] = Counter()
+    for group in yaml.safe_load((FOLDER / f"{name}.yaml").read_text(encoding="utf-8")):
+        context = Context(understanding(group["world"]), tuple(group.get("after", ())))
+        found.update(outcome(context, said, expected) for said, expected in group["say"].items())
+    total = found.total()
+    assert total > 200
+    assert found["right"] >= RIGHT * total, found
+    assert found["wrong"] <= WRONG * total, found
