@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from polaris_nl.automaton.automaton import START, Automaton
 from polaris_nl.automaton.edits import (
@@ -23,50 +23,29 @@ from polaris_nl.language.changes import (
 )
 from polaris_nl.language.choosing import Choosing
 from polaris_nl.language.conditions import condition_in
+from polaris_nl.language.cores import AROUND, Core, Cores, trimmed
 from polaris_nl.language.dialogue import Dialogue, Latest
 from polaris_nl.language.exchange import exchanged, used_in, without
-from polaris_nl.language.expansions import expansions
 from polaris_nl.language.generate import goals_in_words, steps_in_words
 from polaris_nl.language.interpretation import Interpretation
 from polaris_nl.language.mention import Mention
-from polaris_nl.language.patterns import Match, Patterns, strip
+from polaris_nl.language.patterns import Match, Patterns
 from polaris_nl.language.protocol import Language
 from polaris_nl.language.references import References, meant
 from polaris_nl.language.rereading import Rereading
 from polaris_nl.language.retractions import negated, place_of
 from polaris_nl.language.scope import Misfit, Unclear
 from polaris_nl.language.structure import Step
-from polaris_nl.language.tokens import BREAK, COMMA, words
+from polaris_nl.language.tokens import words
 from polaris_nl.model.errors import EditError
 from polaris_nl.model.formula import Literal
 from polaris_nl.model.text import listed, sentence
 
-_LEADS = {"correct-lead": 2, "correct-aside": 1, "correct-tail": 1, "correct-noise": 0}
 WHAT_INSTEAD = "I don't see what should be changed; say what you meant, or undo."
 _MORE = ("also", "too", "as well", "again")
 """Words of a sentence that adds to what was said, however it starts."""
-_WAITED = ("until", "till", "for", "here", "there")
-"""Words behind "wait" that make it something to do."""
 _NEVER = ("do", "not")
 _ONLY = "only"
-
-
-@dataclass(frozen=True, slots=True)
-class Core:
-    """An utterance without the words around a correction.
-
-    Attributes:
-        tokens: what is left, without marks at its ends.
-        strength: 2 behind "no" or "I meant", 1 behind "sorry" or "actually", else 0.
-    """
-
-    tokens: tuple[str, ...]
-    strength: int = 0
-
-    @property
-    def words(self) -> list[str]:
-        """The tokens without marks."""
-        return [t for t in self.tokens if t not in (COMMA, BREAK)]
 
 
 class Corrections:
@@ -78,47 +57,11 @@ class Corrections:
         self._references = references
         common = language.grammar.common
         intents = common.of_kind("correction")
-        self._around = {
-            intent.name: sorted(
-                {
-                    tuple(str(w) for w in said)
-                    for wording in intent.wordings
-                    for said in expansions(wording)
-                },
-                key=len,
-                reverse=True,
-            )
-            for intent in intents
-            if intent.name in _LEADS
-        }
-        rest = [intent for intent in intents if intent.name not in _LEADS]
+        self.core = Cores(language.grammar.common, references.verbs).core
+        rest = [intent for intent in intents if intent.name not in AROUND]
         self._patterns = Patterns(rest, references, common.numbers)
         self._choosing = Choosing(language)
         self._again = Rereading(language, references)
-        # "Go" is a filler in "go and open it", and the verb in "no, go to the kitchen"; "would you mind"
-        # decides how its verb stands, and "instead" what is replaced.
-        needed = {("instead",), *common.connectives["polite"]}
-        self._fillers = [
-            f
-            for f in common.fillers
-            if f not in needed and (len(f) > 1 or f[0] not in references.verbs)
-        ]
-
-    def core(self, tokens: Sequence[str]) -> Core:
-        """An utterance without "no, I meant" in front of it, "instead" behind it, and the like."""
-        found, strength = _trimmed(tokens), 0
-        changed = True
-        while changed:
-            changed = False
-            for name, phrases in self._around.items():
-                kept = _without(found, phrases, name == "correct-tail")
-                if kept is not None:
-                    found, strength, changed = _trimmed(kept), max(strength, _LEADS[name]), True
-            if strength or not changed:
-                kept = strip(found, self._fillers)
-                changed = changed or kept != found
-                found = kept
-        return Core(tuple(found), strength)
 
     def corrected(
         self, utterance: str, core: Core, program: Automaton, dialogue: Dialogue
@@ -337,7 +280,7 @@ class Corrections:
             if len(steps) != 1 or not steps[0].forbidden or steps[0].when:
                 continue
             left = negated(steps[0].goals, there, program)
-            rest = _trimmed(core.tokens[end:])
+            rest = trimmed(core.tokens[end:])
             if left is None:
                 return None
             if not rest:
@@ -420,26 +363,3 @@ class Corrections:
         latest = Latest((), program, changed, replace(dialogue, latest=None), "correct")
         after = replace(dialogue, scope=scope, touched=kept, latest=latest)
         return Interpretation(utterance, "applied", sentence(say), tuple(edits)), after
-
-
-def _trimmed(tokens: Sequence[str]) -> list[str]:
-    found = list(tokens)
-    while found and found[0] in (COMMA, BREAK):
-        found.pop(0)
-    while found and found[-1] in (COMMA, BREAK):
-        found.pop()
-    return found
-
-
-def _without(
-    tokens: Sequence[str], phrases: Sequence[tuple[str, ...]], behind: bool
-) -> list[str] | None:
-    """Tokens without the longest of some phrases at an end, or None; never nothing at all."""
-    for phrase in phrases:
-        size = len(phrase)
-        end = tuple(tokens[-size:]) if behind else tuple(tokens[:size])
-        if size and end == phrase:
-            if len(tokens) <= size or (not behind and tokens[size] in _WAITED):
-                return None
-            return list(tokens[:-size] if behind else tokens[size:])
-    return None

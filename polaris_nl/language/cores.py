@@ -1,0 +1,109 @@
+"""What is left of an utterance without the words around a correction: "no, I meant", "instead", "sorry"."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+
+from polaris_nl.language.common import Common
+from polaris_nl.language.expansions import expansions
+from polaris_nl.language.patterns import strip
+from polaris_nl.language.tokens import BREAK, COMMA
+
+AROUND: Mapping[str, int] = {
+    "correct-lead": 2,
+    "correct-aside": 1,
+    "correct-tail": 1,
+    "correct-noise": 0,
+}
+"""The intents of words around a correction, and how strongly each says that it is one."""
+_WAITED = ("until", "till", "for", "here", "there")
+"""Words behind "wait" that make it something to do."""
+
+
+@dataclass(frozen=True, slots=True)
+class Core:
+    """An utterance without the words around a correction.
+
+    Attributes:
+        tokens: what is left, without marks at its ends.
+        strength: 2 behind "no" or "I meant", 1 behind "sorry" or "actually", else 0.
+    """
+
+    tokens: tuple[str, ...]
+    strength: int = 0
+
+    @property
+    def words(self) -> list[str]:
+        """The tokens without marks."""
+        return [t for t in self.tokens if t not in (COMMA, BREAK)]
+
+
+class Cores:
+    """Finds cores.
+
+    Args:
+        common: words that every domain shares.
+        verbs: verbs that goals begin with.
+    """
+
+    def __init__(self, common: Common, verbs: Collection[str]) -> None:
+        self._around = {
+            intent.name: sorted(
+                {
+                    tuple(str(w) for w in said)
+                    for wording in intent.wordings
+                    for said in expansions(wording)
+                },
+                key=len,
+                reverse=True,
+            )
+            for intent in common.of_kind("correction")
+            if intent.name in AROUND
+        }
+        # "Go" is a filler in "go and open it", and the verb in "no, go to the kitchen"; "would you mind"
+        # decides how its verb stands, and "instead" what is replaced.
+        needed = {("instead",), *common.connectives["polite"]}
+        self._fillers = [
+            f for f in common.fillers if f not in needed and (len(f) > 1 or f[0] not in verbs)
+        ]
+
+    def core(self, tokens: Sequence[str]) -> Core:
+        """An utterance without "no, I meant" in front of it, "instead" behind it, and the like."""
+        found, strength = trimmed(tokens), 0
+        changed = True
+        while changed:
+            changed = False
+            for name, phrases in self._around.items():
+                kept = _without(found, phrases, name == "correct-tail")
+                if kept is not None:
+                    found, strength, changed = trimmed(kept), max(strength, AROUND[name]), True
+            if strength or not changed:
+                kept = strip(found, self._fillers)
+                changed = changed or kept != found
+                found = kept
+        return Core(tuple(found), strength)
+
+
+def trimmed(tokens: Sequence[str]) -> list[str]:
+    """Tokens without marks at their ends."""
+    found = list(tokens)
+    while found and found[0] in (COMMA, BREAK):
+        found.pop(0)
+    while found and found[-1] in (COMMA, BREAK):
+        found.pop()
+    return found
+
+
+def _without(
+    tokens: Sequence[str], phrases: Sequence[tuple[str, ...]], behind: bool
+) -> list[str] | None:
+    """Tokens without the longest of some phrases at an end, or None; never nothing at all."""
+    for phrase in phrases:
+        size = len(phrase)
+        end = tuple(tokens[-size:]) if behind else tuple(tokens[:size])
+        if size and end == phrase:
+            if len(tokens) <= size or (not behind and tokens[size] in _WAITED):
+                return None
+            return list(tokens[:-size] if behind else tokens[size:])
+    return None
