@@ -46,6 +46,8 @@ _MORE = ("also", "too", "as well", "again")
 """Words of a sentence that adds to what was said, however it starts."""
 _NEVER = ("do", "not")
 _ONLY = "only"
+_ON = ("and", "but", "then", "please")
+"""Words between what isn't wanted and what is."""
 
 
 class Corrections:
@@ -285,6 +287,9 @@ class Corrections:
                 return None
             if not rest:
                 return self._applied(utterance, *left, program, dialogue, there)
+            rest = rest[1:] if rest[0] in _ON else rest
+            if not self._language.asks_for(rest):
+                return None  # "Don't go home before you have filled the tray."
             touched = [e.checkpoint for e in left[0] if isinstance(e, RemoveCheckpoint | SetGoals)]
             return self._sentence(utterance, Core(tuple(rest), 2), touched, program, dialogue)
         return None
