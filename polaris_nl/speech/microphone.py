@@ -6,6 +6,7 @@ device that is gone never ends, whether its stream is stopped or aborted. A proc
 
 from __future__ import annotations
 
+import importlib
 import json
 import os
 import select
@@ -145,7 +146,7 @@ def _require() -> None:
         SpeechError: sounddevice or its library.
     """
     try:
-        import sounddevice  # noqa: F401
+        importlib.import_module("sounddevice")  # Its library is loaded with it.
     except ImportError as error:
         raise SpeechError(f"A microphone needs sounddevice. {INSTALL}") from error
     except OSError as error:
