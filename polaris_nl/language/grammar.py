@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import gc
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -45,11 +47,24 @@ def load_grammar(domain: Domain, language: str = "en") -> Grammar:
         FileError: the shared grammar can't be read.
         GrammarError: a grammar file is not as it should be; file and line are named.
     """
-    common = _shipped_common(language)
-    path = grammar_path(domain, language)
-    if path is None:
-        return plain_grammar(domain, common)
-    return read_grammar(path, domain, common)
+    with _uncollected():
+        common = _shipped_common(language)
+        path = grammar_path(domain, language)
+        if path is None:
+            return plain_grammar(domain, common)
+        return read_grammar(path, domain, common)
+
+
+@contextmanager
+def _uncollected() -> Iterator[None]:
+    """Without the garbage collector: all that is made here stays, and looking through it takes its time."""
+    enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if enabled:
+            gc.enable()
 
 
 @cache

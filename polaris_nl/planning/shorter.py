@@ -153,11 +153,15 @@ class Shortcuts:
         checkpoint: Checkpoint = automaton.checkpoints[segment.target]
         if set(checkpoint.goals) != set(segment.goals):
             return None
-        facts = listed([self._wording.fact(fact) for fact in shortcut.extra])
+        following = (automaton.checkpoints[t.target] for t in automaton.outgoing(checkpoint.id))
+        seen_to = next((c.name for c in following if set(c.goals) == set(shortcut.extra)), "")
+        asked = f"for all of the step {seen_to}"  # Said aloud, its goals would take ten seconds.
+        if not seen_to:
+            asked = f"that {listed([self._wording.fact(fact) for fact in shortcut.extra])}"
         saves = f"would save {_actions(shortcut.saved)}"
-        text = f"If {checkpoint.name} also asked that {facts}, that {saves}"
+        text = f"If the step {checkpoint.name} also asked {asked}, that {saves}"
         edit = SetGoals(checkpoint.id, (*checkpoint.goals, *shortcut.extra))
-        repair = Repair(f"also ask in {checkpoint.name} that {facts}", (edit,))
+        repair = Repair(f"also ask in {checkpoint.name} {asked}", (edit,))
         return Warning(sentence(text), segment.transition, (repair,))
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from polaris_nl.automaton.edits import SetGoals
 from polaris_nl.language.understanding import Understanding
 from polaris_nl.model.world_file import load_world
 from polaris_nl.planning.planner import Planner
@@ -112,3 +113,25 @@ def test_an_empty_set_is_noticed_where_the_robot_is_then(planners: dict[str, Pla
     assert plan.warnings[0].text.startswith("There is no dish that is dirty, so")
     assert plan.segments["c1"].actions
     assert not plan.segments["c2"].actions
+
+
+def test_an_offer_names_the_step_that_could_be_seen_to_on_the_way(
+    planners: dict[str, Planner],
+) -> None:
+    lines = (
+        "laid: (at cup countertop) (at plate countertop)",
+        "out [(at cup drying-rack) (at plate drying-rack)]: (robot-at pantry)",
+        "opened: (open cupboard) (in cup cupboard) (in plate cupboard)",
+    )
+    (offer,) = planners["dinner-party"].compile(program(*lines)).warnings
+    assert offer.text == (
+        "If the step out also asked for all of the step opened, that would save 2 actions."
+    )
+    assert [repair.text for repair in offer.repairs] == [
+        "also ask in out for all of the step opened"
+    ]
+    (edit,) = offer.repairs[0].edits
+    assert isinstance(edit, SetGoals)
+    assert {str(goal) for goal in edit.goals} == {
+        "(robot-at pantry)", "(open cupboard)", "(in cup cupboard)", "(in plate cupboard)",
+    }  # fmt: skip
