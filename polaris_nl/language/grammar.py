@@ -5,7 +5,7 @@ from __future__ import annotations
 import gc
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 
@@ -13,6 +13,7 @@ from polaris_nl.language.common import SCHEMA, Common, read_common
 from polaris_nl.language.grammar_file import GrammarFile
 from polaris_nl.language.plain_phrases import hint_line, plain_action, plain_entry
 from polaris_nl.language.predicate_phrases import Phrases, check_text, read_phrases
+from polaris_nl.language.said import BESIDE_SAID, FOLDER, Request, read_said
 from polaris_nl.language.template import Lists
 from polaris_nl.model.data import data_folder
 from polaris_nl.model.domain import Domain, Operator
@@ -32,12 +33,14 @@ class Grammar:
         predicates: phrases by predicate; every predicate of the domain has an entry.
         operators: what is said for an operator, by name.
         names: (predicate of the conditional, name) for checkpoints named by their condition.
+        said: how people say things, for a recogniser.
     """
 
     common: Common
     predicates: Mapping[str, Phrases]
     operators: Mapping[str, str]
     names: tuple[tuple[str, str], ...] = ()
+    said: tuple[Request, ...] = ()
 
 
 def load_grammar(domain: Domain, language: str = "en") -> Grammar:
@@ -50,9 +53,18 @@ def load_grammar(domain: Domain, language: str = "en") -> Grammar:
     with _uncollected():
         common = _shipped_common(language)
         path = grammar_path(domain, language)
-        if path is None:
-            return plain_grammar(domain, common)
-        return read_grammar(path, domain, common)
+        found = (
+            plain_grammar(domain, common) if path is None else read_grammar(path, domain, common)
+        )
+        return replace(found, said=_said(domain, language))
+
+
+def _said(domain: Domain, language: str) -> tuple[Request, ...]:
+    """What people say in a domain: of the file beside it, or of the shipped one."""
+    beside = domain.path.with_name(BESIDE_SAID) if domain.path else None
+    if beside is not None and beside.is_file():
+        return read_said(beside)
+    return read_said(grammar_folder(language) / FOLDER / f"{domain.name}.txt")
 
 
 @contextmanager

@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 
 from polaris_nl.language.grammar import Grammar
 from polaris_nl.language.predicate_phrases import Phrases
+from polaris_nl.language.said import Open
 from polaris_nl.language.template import Choice, Part, Parts, Slot, Word
 from polaris_nl.language.tokens import phrase
 from polaris_nl.model.domain import Predicate
@@ -25,6 +26,8 @@ PER_CHOICE = 2
 """How often each choice of a wording occurs, where there is room."""
 OFTEN = 4
 """After so many names comes a pronoun again: no name is said as often."""
+SAID = 20
+"""How often each of the requests comes up that people have made."""
 COMPOSED = 5_000
 """Phrases of two clauses, so that the ways from one clause into the next are heard too."""
 
@@ -55,7 +58,11 @@ _SOFTENERS: tuple[tuple[str, ...], ...] = ((), (), ("just",), ("please",), ("the
 
 
 def recogniser_phrases(world: World, grammar: Grammar) -> tuple[str, ...]:
-    """At most MOST phrases in a fixed order: controls, names, plain clauses, all, rare words, pairs."""
+    """At most MOST phrases in a fixed order: controls, names, plain clauses, all, rare words, pairs.
+
+    After these comes how people say things, each request SAID times: what is said most is heard best. Those
+    without a name are repeated, which a recogniser takes as how often they are said.
+    """
     maker = _Maker(world, grammar)
     found = dict.fromkeys(_text(words) for words in maker.fixed())
     clauses = maker.clauses(MOST - len(found) - COMPOSED - PLAIN)
@@ -66,7 +73,7 @@ def recogniser_phrases(world: World, grammar: Grammar) -> tuple[str, ...]:
         if len(found) >= MOST:
             break
     found.pop("", None)
-    return tuple(found)
+    return (*found, *(_text(words) for words in maker.said()))
 
 
 def _text(words: Iterable[str]) -> str:
@@ -82,6 +89,9 @@ class _Source:
     types: Mapping[str, Sequence[str]] = field(default_factory=dict)
     plain: bool = False
     drawn: int = 0
+
+
+_NOTHING = _Source(Parts(()), "")
 
 
 class _Maker:
@@ -189,6 +199,24 @@ class _Maker:
             else:
                 following = self._draw(goals[number * 7 % len(goals)])
                 yield (*goal, *self._thens[number // 2 % len(self._thens)], *following)
+
+    def said(self) -> Iterator[Sequence[str]]:
+        """How people say things, with the world's names in turn."""
+        for number, request in enumerate(self._grammar.said):
+            for turn in range(number, number + SAID):
+                yield [
+                    word
+                    for place, part in enumerate(request)
+                    for word in (
+                        [part] if isinstance(part, str) else self._named(part, turn, place)
+                    )
+                ]
+
+    def _named(self, place: Open, turn: int, at: int) -> Sequence[str]:
+        """What is named in an open place: a name alone, or one with its article or a pronoun."""
+        names = self._names.get(place.type, ())
+        choices = self._slot(Slot("", place.type), _NOTHING) if place.whole else names
+        return choices[_turned(turn, at, len(choices))] if choices else ()
 
     def _drawn(self, source: _Source, count: int) -> Iterator[tuple[str, ...]]:
         return (self._draw(source) for _ in range(count))
