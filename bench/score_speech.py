@@ -126,7 +126,7 @@ def _hear(system: str, task: Task, sounds: Sequence[bytes], context: Remembered)
     if system == SYSTEMS[1]:
         return _plain(task, task.world, sounds, context)
     pieces = _pieces(task.world, "wide", sounds, second=True)
-    return utterance(pieces, context.weigh, _ways(task.world))
+    return utterance(pieces, context.weigh, _ways(task.world), context.meaning)
 
 
 def score(order: tuple[Task, tuple[str, ...]]) -> list[Score]:
@@ -146,6 +146,8 @@ def _scored(
     task: Task, system: str, said: Utterance, context: Remembered, typed_right: bool
 ) -> Score:
     meaning = context.meaning(said.text) if said.accepted else "refused"
+    if said.doubts:
+        meaning = f"question: {', '.join(said.doubts)}"
     right = is_meant(meaning, task.sentence.expect, task.sentence.text)
     note = f" ({said.why_not})" if said.why_not else f" <- {said.repaired}" * bool(said.repaired)
     return Score(

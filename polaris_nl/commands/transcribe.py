@@ -10,7 +10,7 @@ from typing import Any
 from polaris_nl.commands.common import complain, print_json, print_text, session_of
 from polaris_nl.hands_free.phrases import spoken_names, spoken_phrases
 from polaris_nl.hands_free.recording import kept
-from polaris_nl.hands_free.weight import weigher
+from polaris_nl.hands_free.weight import Sense
 from polaris_nl.language.interpretation import Refusal
 from polaris_nl.logs.reader import read_log
 from polaris_nl.model.errors import LogError, SpeechError
@@ -67,7 +67,8 @@ def replay(path: Path, ears: Ears, session: Session, as_json: bool) -> int:
         raise LogError(f"The log {path} keeps no sound; listen --log FILE --record keeps it.")
     code = 0
     for name, audio in kept(sounds):
-        said, answer = take(ears.piece(audio, weigher(session)), name, session)
+        sense = Sense(session)
+        said, answer = take(ears.piece(audio, sense.weigh, sense.means), name, session)
         show(Path(name), said, answer, session, as_json)
         code = code or int(answer.interpretation.outcome == "refused")
     return code
@@ -91,7 +92,9 @@ def hear_file(path: Path, ears: Ears, session: Session) -> tuple[Utterance, Answ
     Raises:
         SpeechError: it can't be read.
     """
-    return take(ears.utterance(file_blocks(path), weigher(session)), path.name, session)
+    sense = Sense(session)
+    said = ears.utterance(file_blocks(path), sense.weigh, sense.means)
+    return take(said, path.name, session)
 
 
 def take(said: Utterance, source: str, session: Session) -> tuple[Utterance, Answer]:

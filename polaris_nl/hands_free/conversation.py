@@ -121,6 +121,8 @@ class Conversation:
         if said.accepted:
             self._failures, self._choices = 0, None
             return self._act(said, said.text, heard)
+        if said.doubts:
+            return self._offered(said, heard, Choices(said.doubts))
         if not self._was_meant(said, called):
             self._sink(heard)
             return Reply(said)  # Not meant for the robot: it doesn't butt in.
@@ -166,12 +168,16 @@ class Conversation:
         elif self._failures >= FAILURES:
             choices = choices_among(near(), ("help", "read me the program"))
         if choices is not None:
-            self._choices = choices
-            self._sink(heard)
-            return self._reply(said, choices.say)
+            return self._offered(said, heard, choices)
         answer = self.session.say(said.text, source="voice", heard=heard)
         self._tell(answer.say)
         return Reply(said, answer.say, answer)
+
+    def _offered(self, said: Utterance, heard: HeardEvent, choices: Choices) -> Reply:
+        """Asks which of some sentences was meant."""
+        self._choices = choices
+        self._sink(heard)
+        return self._reply(said, choices.say)
 
     def _reply(self, said: Utterance, text: str) -> Reply:
         self._tell(text)

@@ -16,7 +16,7 @@ from typing import Protocol
 from polaris_nl.execution.events import Heard as HeardEvent
 from polaris_nl.hands_free.conversation import Conversation, Reply
 from polaris_nl.hands_free.phrases import SLEEP, WAKE
-from polaris_nl.hands_free.weight import weigher
+from polaris_nl.hands_free.weight import Sense, weigher
 from polaris_nl.speech.ears import Ears
 from polaris_nl.speech.hearer import Heard, Hearer, Quick, Started
 from polaris_nl.speech.hearing import Utterance, near, utterance
@@ -180,7 +180,8 @@ class Listening:
             self._log(Utterance(heard.quick, True, spoken.alternatives, spoken.seconds), heard)
             return
         started = time.perf_counter()
-        said = utterance([spoken], self._weigh, self.ears.ways)
+        sense = Sense(self.conversation.session)
+        said = utterance([spoken], sense.weigh, self.ears.ways, sense.means)
         if self._is_mode(said, heard):
             return
         event = self._event(said, heard, time.perf_counter() - started + heard.decoding_s)

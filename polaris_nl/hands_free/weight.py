@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 from polaris_nl.language.interpretation import Interpretation
 from polaris_nl.session import Session
 from polaris_nl.speech.weight import Weigh, Weight
@@ -31,6 +33,27 @@ def weight_of(meant: Interpretation, awaits_yes: bool = False) -> Weight | None:
     return Weight.HARMLESS
 
 
+class Sense:
+    """What words mean in a session as it is now, each understood once; changes nothing.
+
+    Args:
+        session: where they would be said; it mustn't change meanwhile.
+    """
+
+    def __init__(self, session: Session) -> None:
+        self._awaits_yes = session.awaits_yes
+        self._understood = cache(session.understood)
+
+    def weigh(self, text: str) -> Weight | None:
+        """What words weigh."""
+        return weight_of(self._understood(text), self._awaits_yes)
+
+    def means(self, text: str) -> object:
+        """What words would do: two that do the same are equal."""
+        meant = self._understood(text)
+        return meant.outcome, meant.edits, meant.command, meant.query
+
+
 def weigher(session: Session) -> Weigh:
-    """Weighs words in a session as it is now; changes nothing."""
+    """Weighs words in a session as it is at each time; changes nothing."""
     return lambda text: weight_of(session.understood(text), session.awaits_yes)

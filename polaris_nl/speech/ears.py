@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 from polaris_nl.speech.activity import Activity, SileroActivity
+from polaris_nl.speech.doubt import Means
 from polaris_nl.speech.hearing import Utterance, Ways, utterance
 from polaris_nl.speech.lexicon import SoundAlikes, sound_alikes
 from polaris_nl.speech.models import NARROW, model_folder
@@ -46,12 +47,12 @@ class Ears:
         """Which of the world's words are listened for under other words, and which can't be heard."""
         return self.ways.alikes
 
-    def utterance(self, blocks: Iterable[bytes], weigh: Weigh) -> Utterance:
+    def utterance(self, blocks: Iterable[bytes], weigh: Weigh, means: Means = str) -> Utterance:
         """What a recording says as a whole."""
         found = list(pieces(blocks, self.activity, self.phrased, self.free))
-        return utterance(found, weigh, self.ways)
+        return utterance(found, weigh, self.ways, means)
 
-    def piece(self, audio: bytes, weigh: Weigh) -> Utterance:
+    def piece(self, audio: bytes, weigh: Weigh, means: Means = str) -> Utterance:
         """What one piece of speech says, that was cut out before."""
         self.phrased.feed(audio)
         phrased, free = self.phrased.finish(), None
@@ -59,7 +60,7 @@ class Ears:
             self.free.feed(audio)
             free = self.free.finish()
         found = [Spoken.of(phrased, free, audio)] if phrased.texts else []
-        return utterance(found, weigh, self.ways)
+        return utterance(found, weigh, self.ways, means)
 
 
 class EarMaker:

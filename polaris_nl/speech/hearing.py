@@ -15,6 +15,7 @@ import itertools
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+from polaris_nl.speech.doubt import Means, Reading, doubts
 from polaris_nl.speech.lexicon import SoundAlikes
 from polaris_nl.speech.recogniser import UNKNOWN, Spoken
 from polaris_nl.speech.repair import MOST_TRIED, Repairer, apart
@@ -64,6 +65,7 @@ class Utterance:
             log-likelihoods a word; None where that isn't known.
         repaired: the words before they were mended, or "".
         why_not: why it isn't accepted, for the log; or "".
+        doubts: sentences to be asked about, of which one seems to have been said; or empty.
     """
 
     text: str
@@ -75,6 +77,7 @@ class Utterance:
     gain: float | None = None
     repaired: str = ""
     why_not: str = ""
+    doubts: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -90,19 +93,26 @@ class Ways:
     repairer: Repairer | None = None
 
 
-def utterance(pieces: Sequence[Spoken], weigh: Weigh, ways: Ways = Ways()) -> Utterance:
+def utterance(
+    pieces: Sequence[Spoken], weigh: Weigh, ways: Ways = Ways(), means: Means = str
+) -> Utterance:
     """What pieces of speech said together.
 
     Args:
         pieces: in order; the pauses between them may be ends of sentences or hesitations.
         weigh: the strict test, and what a mistake would cost.
         ways: what helps to make sense of them.
+        means: what words would do, to know which readings differ in nothing that matters.
     """
     chosen: list[str] = []
     repaired = ""
     gains: list[float | None] = []
+    doubtful: tuple[str, ...] = ()
     for piece in pieces:
-        found = _best(chosen, piece, weigh, ways)
+        readings = _sensible(chosen, piece, weigh, ways)
+        found = min(readings, key=lambda f: f.cost, default=None)
+        if found is not None:
+            doubtful = doubtful or _doubts(found, readings, piece, weigh, ways, means)
         repaired = repaired or (piece.alternatives[0] if found and found.repaired else "")
         heard = ways.alikes.put_back(piece.alternatives[0])[-1]
         gains.append(_gain(piece, found.reading if found else heard, ways.alikes))
@@ -113,6 +123,10 @@ def utterance(pieces: Sequence[Spoken], weigh: Weigh, ways: Ways = Ways()) -> Ut
     known = [gain for gain in gains if gain is not None]
     gain = sum(known) / len(text.split()) if text and len(known) == len(pieces) else None
     why_not = _why_not(text, free, different, gain, weigh, ways)
+    if why_not:
+        doubtful = ()
+    elif doubtful:
+        why_not = "another reading is as likely" if len(doubtful) > 1 else "little speaks for it"
     return Utterance(
         text,
         accepted=not why_not,
@@ -123,7 +137,26 @@ def utterance(pieces: Sequence[Spoken], weigh: Weigh, ways: Ways = Ways()) -> Ut
         gain=gain,
         repaired=repaired,
         why_not=why_not,
+        doubts=doubtful,
     )
+
+
+def _doubts(
+    found: _Found,
+    readings: Sequence[_Found],
+    piece: Spoken,
+    weigh: Weigh,
+    ways: Ways,
+    means: Means,
+) -> tuple[str, ...]:
+    """What would have to be asked about a piece."""
+    chosen, *others = (
+        Reading(BREAK.join(f.pieces), _gain(piece, f.reading, ways.alikes), f.rank)
+        for f in (found, *readings)
+        if f is found or weigh(BREAK.join(f.pieces)) is not Weight.ASKING
+    )
+    apart_by = difference(found.reading, piece.free)
+    return doubts(chosen, others, piece.free, apart_by, weigh(chosen.text), means)
 
 
 def _why_not(
@@ -195,28 +228,32 @@ class _Found:
     cost: float
     reading: str
     repaired: bool = False
+    rank: int = 0
 
 
-def _best(chosen: list[str], piece: Spoken, weigh: Weigh, ways: Ways) -> _Found | None:
-    """The reading that makes sense and that most speaks for; None if none makes sense."""
+def _sensible(chosen: list[str], piece: Spoken, weigh: Weigh, ways: Ways) -> list[_Found]:
+    """Readings that make sense, as many as are looked at."""
     found: list[_Found] = []
     for rank, reading in enumerate(itertools.islice(_readings(piece, ways.alikes), TRIED)):
-        found += _placed(chosen, reading, piece.free, RANK_COST * rank, weigh)
+        placed = _placed(chosen, reading, piece.free, RANK_COST * rank, weigh)
+        found += (replace(one, rank=rank) for one in placed)
         whole = bool(found) and found[-1].pieces[-1] == piece.free and found[-1].cost < ASKING_COST
         if len(found) >= LOOKED_AT or whole:
             break
     if not found:
         rest = itertools.islice(_readings(piece, ways.alikes), TRIED, None)
         for reading in rest:
-            if found := _placed(chosen, reading, piece.free, 0.0, weigh):
+            if placed := _placed(chosen, reading, piece.free, 0.0, weigh):
+                found = [replace(one, rank=TRIED) for one in placed]
                 break
     heard_so = piece.free and difference(piece.alternatives[0], piece.free) <= NEAR
     if piece.free and ways.repairer is not None and (heard_so or not found):
         for one in _placed(chosen, piece.free, piece.free, FREE_COST, weigh):
             found.append(replace(one, repaired=True))
     if not found and ways.repairer is not None:
-        return _repaired(chosen, piece, weigh, ways.repairer)
-    return min(found, key=lambda f: f.cost, default=None)
+        mended = _repaired(chosen, piece, weigh, ways.repairer)
+        return [mended] if mended is not None else []
+    return found
 
 
 def _placed(chosen: list[str], reading: str, free: str, cost: float, weigh: Weigh) -> list[_Found]:

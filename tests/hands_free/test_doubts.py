@@ -10,7 +10,8 @@ from polaris_nl.commands.transcribe import NOT_MEANT
 from polaris_nl.commands.transcribe import take as transcribed
 from polaris_nl.execution.events import Event, Heard
 from polaris_nl.hands_free.conversation import Conversation, Reply
-from polaris_nl.hands_free.weight import weight_of
+from polaris_nl.hands_free.weight import Sense, weight_of
+from polaris_nl.language.interpretation import Interpretation
 from polaris_nl.model.world_file import load_world
 from polaris_nl.session import Session
 from polaris_nl.speech.hearing import Utterance
@@ -102,3 +103,37 @@ def test_another_sentence_is_no_answer_though_it_may_have_sounded_like_one(
     unsure = Utterance("i no", False, alternatives=("i no", "no"), why_not="not understood")
     reply = conversation.take(unsure, heard, True, lambda: [])
     assert reply.text == "All right. Say it in other words."
+
+
+def test_of_two_readings_that_are_as_likely_the_user_chooses(session: Session) -> None:
+    conversation = Conversation(session)
+    empty = session.snapshot.automaton
+    readings = ("put the cup on the desk", "put the tray on the desk")
+    said = Utterance(readings[0], False, why_not="another reading is as likely", doubts=readings)
+    heard = Heard(time=0.0, utterance=said.text, source="voice")
+    reply = conversation.take(said, heard, called=False, near=lambda: [])
+    assert reply.text == (
+        "I didn't get that. Did you mean one: put the cup on the desk; two: put the tray on the desk?"
+        " Say the number, or none."
+    )
+    assert session.snapshot.automaton == empty
+    assert take(conversation, "the second one", accepted=True).text.startswith("Bring the tray")
+
+
+def test_what_is_doubtful_is_understood_once_and_alike_where_it_does_the_same(
+    session: Session, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[str] = []
+    real = session.understood
+
+    def understood(text: str) -> Interpretation:
+        asked.append(text)
+        return real(text)
+
+    monkeypatch.setattr(session, "understood", understood)
+    sense = Sense(session)
+    assert sense.weigh("put the cup on the desk") is Weight.CHANGING
+    assert sense.means("put the cup on the desk") == sense.means("place the cup on the desk")
+    assert sense.means("put the cup on the desk") != sense.means("put the tray on the desk")
+    assert sense.means("where is the cup") != sense.means("where is the tray")
+    assert len(asked) == len(set(asked)) == 5
