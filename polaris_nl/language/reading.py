@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from polaris_nl.language.clauses import Clause
 from polaris_nl.language.goal_relations import flat, one_at_a_time
 from polaris_nl.language.resolve import Resolver
 from polaris_nl.language.scope import Misfit, Scope
@@ -68,6 +69,7 @@ class _Reader:
         latest: tuple[Goal, ...],
     ) -> None:
         self._branched = branched
+        self._latest = latest
         self.done = StepsSoFar(resolver, scope, latest)
         self._sequel = False
         self._first = False
@@ -277,6 +279,9 @@ class _Reader:
         goals = self.done.literals(item, condition=False)
         if item.clause is not None and item.clause.kind == "ellipsis":
             self.done.check_places(goals)
+            leans = any(g.predicate == item.clause.predicate for g in flat(self._latest))
+            if item is self.items[0] and _says_only_names(item.clause) and not leans:
+                raise Misfit('I miss a verb; say for example "bring" before it.')
         self._by_way_of(item, goals)
         forbidden: tuple[Goal, ...] = ()
         if self._negate:
@@ -323,6 +328,11 @@ class _Reader:
                     Step((first,), self._when, "condition" if self._when else "then")
                 )
                 self._when, self._how, self.done.new_step = (), "", True
+
+
+def _says_only_names(clause: Clause) -> bool:
+    """Whether a clause has no words of its own: "anna the cup" leans on what was said just before."""
+    return sum(m.end - m.start for _, m in clause.bindings) == clause.end - clause.start
 
 
 def _without(item: Item) -> bool:

@@ -33,6 +33,10 @@ class Referents:
     def __init__(self, world: World) -> None:
         self._world = world
         self._pronouns = Pronouns(world)
+        placing = (world.domain.predicates.get(name) for name in _PLACE_PREDICATES)
+        self._places = tuple(
+            {t: None for found in placing if found for p in found.parameters for t in p.types}
+        )
 
     def meant(
         self, mention: Mention, types: Sequence[str], scope: Scope, condition: bool = False
@@ -186,6 +190,8 @@ class Referents:
                 self.meant(place, ("surface", "container", "region", "person"), scope).entities
             )
         except (Unclear, Misfit):
+            if self._holds_nothing(place, candidates):
+                raise Misfit(f"Nothing is kept in {place.text}; say where it is, or \"and\".") from None
             return list(candidates)
         state = self._world.initial
         held = [
@@ -198,6 +204,13 @@ class Referents:
             or self._world.place_of(c.entity, state) in there
         ]
         return held or list(candidates)
+
+    def _holds_nothing(self, place: Mention, things: Sequence[Candidate]) -> bool:
+        """Whether what is said to be a place is a thing itself: "the fork in the spoon" is misheard."""
+        types = {self._world.entities[c.entity].type for c in things}
+        placed_in = [p for p in self._places if p not in types]
+        named = [c.entity for c in place.candidates]
+        return bool(named) and not any(is_a(self._world, name, placed_in) for name in named)
 
     def _described(self, candidates: Sequence[Candidate], mention: Mention) -> list[Candidate]:
         """Adjectives that describe: among several, those of which they are true now."""
