@@ -191,7 +191,9 @@ class Referents:
             )
         except (Unclear, Misfit):
             if self._holds_nothing(place, candidates):
-                raise Misfit(f"Nothing is kept in {place.text}; say where it is, or \"and\".") from None
+                raise Misfit(
+                    f'Nothing is kept in {place.text}; say where it is, or "and".'
+                ) from None
             return list(candidates)
         state = self._world.initial
         held = [

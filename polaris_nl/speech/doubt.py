@@ -2,11 +2,13 @@
 
 In noise, a wrong reading gets as likely as the right one long before nothing is understood. What gives it
 away is that the free decoding doesn't mean the same, and that another reading is as likely, that its words
-explain the sound no better than any words could, or that many readings were likelier.
+explain the sound no better than any words could, or that many readings were likelier. "Should" and
+"shouldn't" are so alike that even the free decoding is no witness.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -14,6 +16,8 @@ from polaris_nl.speech.weight import Weight
 
 NARROW = 1.0
 """By how much a reading must be likelier than one that means something else (difference of log-likelihoods)."""
+OPPOSITE = 3.0
+"""The same for one that says the opposite: a "not" is easily lost, and nothing is more wrong."""
 DIFFERENT, FAR_DOWN = 0.2, 8
 """What is so different from what was heard freely has to gain in likelihood over it; so far down the list
 of readings, it is doubtful in any case."""
@@ -62,18 +66,29 @@ def doubts(
     if weight is None or weight < Weight.CHANGING or chosen.gain is None or not free:
         return ()
     meant = means(chosen.text)
-    if means(free) == meant:
-        return ()
     rivals = [
-        other.text
+        (other, opposite(other.text, chosen.text))
         for other in others
-        if other.gain is not None
-        and chosen.gain - other.gain < NARROW
-        and means(other.text) != meant
+        if other.gain is not None and means(other.text) != meant
     ]
-    if not rivals and (len(chosen.text.split()) <= SHORT or not _weak(chosen, different)):
-        return ()
-    return tuple(dict.fromkeys((chosen.text, *rivals)))[:MOST_ASKED]
+    near = [o.text for o, flips in rivals if _is_near(chosen, o, OPPOSITE if flips else NARROW)]
+    if means(free) == meant:
+        near = [o.text for o, flips in rivals if flips and o.text in near]
+    elif not near and len(chosen.text.split()) > SHORT and _weak(chosen, different):
+        return (chosen.text,)
+    return tuple(dict.fromkeys((chosen.text, *near)))[:MOST_ASKED] if near else ()
+
+
+def opposite(one: str, other: str) -> bool:
+    """Whether two texts differ in nothing but a "not"."""
+    return one != other and _NOT.sub("", one).split() == _NOT.sub("", other).split()
+
+
+_NOT = re.compile(r"n't\b|\bnot\b")
+
+
+def _is_near(chosen: Reading, other: Reading, margin: float) -> bool:
+    return chosen.gain is not None and other.gain is not None and chosen.gain - other.gain < margin
 
 
 def _weak(chosen: Reading, different: float) -> bool:

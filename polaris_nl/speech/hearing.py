@@ -15,7 +15,7 @@ import itertools
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from polaris_nl.speech.doubt import Means, Reading, doubts
+from polaris_nl.speech.doubt import Means, Reading, doubts, opposite
 from polaris_nl.speech.lexicon import SoundAlikes
 from polaris_nl.speech.recogniser import UNKNOWN, Spoken
 from polaris_nl.speech.repair import MOST_TRIED, Repairer, apart
@@ -152,11 +152,19 @@ def _doubts(
     """What would have to be asked about a piece."""
     chosen, *others = (
         Reading(BREAK.join(f.pieces), _gain(piece, f.reading, ways.alikes), f.rank)
-        for f in (found, *readings)
-        if f is found or weigh(BREAK.join(f.pieces)) is not Weight.ASKING
+        for f in (found, *readings, *_opposites(found, piece, ways))
+        if f is found or weigh(BREAK.join(f.pieces)) not in (None, Weight.ASKING)
     )
     apart_by = difference(found.reading, piece.free)
     return doubts(chosen, others, piece.free, apart_by, weigh(chosen.text), means)
+
+
+def _opposites(found: _Found, piece: Spoken, ways: Ways) -> Iterator[_Found]:
+    """The readings that differ from the one found by a "not", however few were looked at."""
+    for reading in _readings(piece, ways.alikes):
+        if opposite(reading, found.reading):
+            last = found.pieces[-1].removesuffix(found.reading) + reading
+            yield replace(found, pieces=[*found.pieces[:-1], last], reading=reading)
 
 
 def _why_not(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from polaris_nl.speech.doubt import Reading, doubts
+from polaris_nl.speech.doubt import Reading, doubts, opposite
 from polaris_nl.speech.hearing import utterance
 from polaris_nl.speech.recogniser import Spoken
 from polaris_nl.speech.weight import Weight
@@ -73,3 +73,26 @@ def test_an_utterance_is_left_alone_where_it_is_doubtful(
     assert said.accepted is accepted
     assert said.doubts == (() if accepted else (CUP, TRAY))
     assert bool(said.why_not) is not accepted
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "found"),
+    [
+        ("it should be open", "it shouldn't be open", True),
+        ("do not go", "do go", True),
+        ("it should be open", "it should be open", False),
+        ("it should be open", "it shouldn't be shut", False),
+        ("put the knot away", "put the k away", False),
+    ],
+)
+def test_the_opposite_differs_by_a_not(one: str, other: str, found: bool) -> None:
+    assert opposite(one, other) is opposite(other, one) is found
+
+
+def test_a_lost_not_is_asked_about_whatever_was_heard_freely() -> None:
+    opened, shut = "the door should be left open", "the door shouldn't be left open"
+    assert asked(Reading(opened, 13.0), Reading(shut, 10.6), free=opened) == (opened, shut)
+    assert asked(Reading(opened, 13.0), Reading(shut, 9.9), free=opened) == ()
+    piece = Spoken((opened, TRAY, shut), b"", opened, (13.0, 12.5, 10.6))
+    said = utterance([piece], lambda text: Weight.CHANGING)
+    assert said.doubts == (opened, shut)
