@@ -97,7 +97,8 @@ class _Reader:
         elif item.mark in ("then", "break"):
             if item.mark == "break":
                 self.done.sentence = len(self.done.steps)
-            self.done.flush()
+            if not (self._how == "until" and self._when):
+                self.done.flush()
             self.done.new_step = True
             self._sequel = item.mark == "then" and item.text in _SEQUELS
             self._first = bool(self.done.steps) and item.text.split()[:1] == [_BUT_FIRST]
@@ -143,6 +144,10 @@ class _Reader:
         Raises:
             Misfit: something is missing.
         """
+        if self._how == "until" and self._when and self.done.deferred:
+            # "Before you go home, wait until she is in": going home waits for it.
+            self.done.steps.append(Step(self.done.deferred, self._when, "condition", self._waits))
+            self._when, self._how, self.done.deferred = (), "", ()
         self.done.flush()
         if any(step == Step() for step in self.done.steps):
             raise Misfit("Then there is nothing to do; say what the robot should achieve, or undo.")
@@ -175,7 +180,8 @@ class _Reader:
             # "Before you go to the kitchen, close it" is about the robot's own acts.
             self.done.deferred = when
         else:
-            self.finish()
+            if not (mark == "until" and self.done.deferred):
+                self.finish()
             self._when, self._how = when, mark
             self._waits = self._sequel or mark == "until"
         self.done.new_step, self._sequel = True, False
@@ -256,7 +262,12 @@ class _Reader:
         return goes_on or self._postposed
 
     def _attach(self, previous: Step, when: tuple[Literal, ...], mark: str) -> None:
-        if mark == "unless":
+        if mark == "unless" and previous.when:
+            # "When she comes, give it to her unless she has it."
+            if len(when) > 1:
+                raise Misfit("Say that in two sentences: what to wait for, and when not to do it.")
+            self.done.steps[-1] = replace(previous, when=(*previous.when, when[0].negation))
+        elif mark == "unless":
             self.done.steps[-1:] = [Step((), when, "condition"), replace(previous, role="else")]
         elif mark == "until" and previous.forbidden:
             # "Don't open it until she comes" is "when she comes, open it".
@@ -292,7 +303,11 @@ class _Reader:
         elif self.done.steps and not self._when and self.done.supersedes(goals):
             self.done.steps.pop()
             self.done.new_step = True
-        if self._unless:
+        if self._unless and self._when and len(self._unless) == 1:
+            when = (*self._when, self._unless[0].negation)
+            self.done.steps.append(Step(goals, when, "condition", self._waits))
+            self._when, self._how, self._unless = (), "", ()
+        elif self._unless:
             self.done.steps.append(Step((), self._unless, "condition"))
             self.done.steps.append(Step(goals, (), "else"))
             self._unless = ()

@@ -53,6 +53,8 @@ class StepsSoFar:
     def move_to_front(self) -> None:
         """The latest step comes before the others of its sentence."""
         *before, last = self.steps
+        if last.role == "else":
+            return  # "Otherwise wash it first and then ...": nothing of that branch comes before it.
         self.steps = [*before[: self.sentence], last, *before[self.sentence :]]
         self.new_step = True
 
