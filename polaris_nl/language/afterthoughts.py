@@ -24,7 +24,7 @@ def step_about(
 
     Args:
         things: what may be meant, the likeliest first.
-        alike: goals whose like is done there, before other steps.
+        alike: goals whose like must be done there, if any.
         touched: the steps of the latest edit, which come before the rest.
         program: the program.
 
@@ -33,13 +33,12 @@ def step_about(
     """
     made = [c for c in program.checkpoints if c != START]
     predicates = {g.predicate for g in flat(alike)}
-    for wanted in (predicates, set()) if predicates else (predicates,):
-        for named in things:
-            for checkpoint in (*reversed(touched), *reversed(made)):
-                for goal in flat(program.checkpoints[checkpoint].goals):
-                    about = thing_placed(goal) if says_a_place(goal) else next(iter(goal.args), "")
-                    if about in named and (not wanted or goal.predicate in wanted):
-                        return checkpoint
+    for named in things:
+        for checkpoint in (*reversed(touched), *reversed(made)):
+            for goal in flat(program.checkpoints[checkpoint].goals):
+                about = thing_placed(goal) if says_a_place(goal) else next(iter(goal.args), "")
+                if about in named and (not predicates or goal.predicate in predicates):
+                    return checkpoint
     raise Misfit("")
 
 

@@ -56,6 +56,8 @@ _REFUSABLE = (
     "remove", "rename", "move", "move-before", "swap", "merge", "split", "cut-after", "remove-rest", "connect",
     "else", "unconditional", "between",
 )  # fmt: skip
+_BY_DOING = ("start", "by")
+"""Words before which "going to the kitchen" is something to do."""
 NO_STEPS = "There are no steps yet; say what the robot should achieve first."
 NOTHING_CHANGES = "It is like that already; nothing changes."
 MeantThen = tuple[Interpretation, Dialogue]
@@ -296,7 +298,8 @@ class Changes:
             Unclear: a question has to be asked.
         """
         assert isinstance(span, tuple)
-        steps = self.steps(list(tokens[span[0] : span[1]]), dialogue)
+        said = list(tokens[span[0] : span[1]])
+        steps = self.steps(said, dialogue) or self.steps([*_BY_DOING, *said], dialogue)
         if (
             not steps
             or not (steps[0].goals or steps[0].when)

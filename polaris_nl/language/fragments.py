@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal as OneOf
 
+from polaris_nl.language.background import Background
 from polaris_nl.language.clauses import Clause, ClauseFinder
 from polaris_nl.language.common import Common
 from polaris_nl.language.mention import Mention
@@ -30,7 +31,24 @@ _OPENERS = PhraseSet(
 )
 """Words that begin a request behind what is only told: "my hands are full, could you ..."."""
 _EXCUSING = frozenset(
-    ("is", "are", "am", "'m", "has", "have", "'ve", "had", "can", "could", "do", "does")
+    (
+        "is",
+        "are",
+        "am",
+        "'m",
+        "'s",
+        "'ll",
+        "will",
+        "was",
+        "has",
+        "have",
+        "'ve",
+        "had",
+        "can",
+        "could",
+        "do",
+        "does",
+    )
 )
 _NO_EXCUSE = frozenset(
     (
@@ -83,6 +101,7 @@ class Fragments:
         self._telling = frozenset(word for p in common.telling for word in p)
         phrases = (*self._excepting, *self._contrast, *self._reasons)
         self._longest = max(map(len, phrases), default=0)
+        self._background = Background(common)
 
     def at(
         self, tokens: Sequence[str], at: int, mentions: Mentions, clauses: Clauses
@@ -104,6 +123,10 @@ class Fragments:
         yield from self._beneficiaries(tokens, at, mentions)
         yield from self._told_of_people(tokens, at, mentions, clauses)
         yield from self._excuses(tokens, at, mentions, clauses)
+        for start, end in self._background.at(tokens, at, mentions, clauses):
+            named = tuple(_named(mentions, start, end))
+            told = Mention(start, end, " ".join(tokens[start:end]), parts=named)
+            yield Fragment(end, TELLING_COST + REASON_WORD_COST * (end - start), "topic", told)
 
     def _phrases(self, tokens: Sequence[str], at: int) -> Iterator[tuple[str, ...]]:
         for end in range(min(len(tokens), at + self._longest), at, -1):
@@ -209,7 +232,7 @@ class Fragments:
         self, tokens: Sequence[str], at: int, mentions: Mentions, clauses: Clauses
     ) -> Iterator[Fragment]:
         """`my hands are full, could you ...`, `... I've got my hands full`: why it is asked for."""
-        first = at == 0 or tokens[at - 1] in (BREAK, COMMA)
+        first = self._background.begins(tokens, at) or tokens[at - 1] in (BREAK, COMMA)
         own = tokens[at] in ("my", "our", "i", "we")
         people = [m for m in mentions[at] if m.candidates and self._clauses.fits(m, ("person",))]
         if not own and not (first and people):
@@ -219,8 +242,9 @@ class Fragments:
             if tokens[end - 1] in _NO_EXCUSE:
                 return
             ends = end == len(tokens) or tokens[end] == BREAK
-            opener = _OPENERS.length_at(tokens, end + (tokens[end : end + 1] == [COMMA]))
-            asked = end + (tokens[end : end + 1] == [COMMA]) + opener
+            opening = end + (tokens[end : end + 1] == [COMMA] or tokens[end : end + 1] == ["um"])
+            opener = _OPENERS.length_at(tokens, opening)
+            asked = opening + opener
             requested = (
                 opener and asked < len(tokens) and any(c.kind == "goal" for c in clauses[asked])
             )

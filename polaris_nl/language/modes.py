@@ -83,7 +83,7 @@ def roles(mode: Mode, clause: Clause, before: str) -> Iterator[tuple[Role, float
         if mode == "either" and before == "and":
             yield "condition", LEANING_COST, "after-condition"
         alone = before in ("", BREAK) and len(clause.bindings) == 1  # "Fridge shut, please."
-        if mode == "plain" and (before in _JOINERS or alone):
+        if mode == "plain" and (before in (*_JOINERS, "then") or alone):
             yield "goal", SMALL_COST, "plain"
     elif clause.kind == "wish":
         if mode in (*OPEN, "state"):

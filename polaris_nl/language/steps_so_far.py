@@ -181,6 +181,11 @@ class StepsSoFar:
         last = self.steps[-1]
         return superseded(last, goals) and (not self.new_step or bool(last.forbidden))
 
+    def was_found_for(self, goals: Sequence[Goal]) -> bool:
+        """Whether a thing was only to be found for these goals: "if it's lost, find it and bring it to her"."""
+        last = replace(self.steps[-1], when=(), role="then")
+        return self.sought and not self.new_step and superseded(last, goals)
+
     def are_separate(self, goals: Sequence[Goal]) -> bool:
         """Whether goals joined by "and" are a step of their own."""
         if not self.steps:
