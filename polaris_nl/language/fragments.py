@@ -178,7 +178,10 @@ class Fragments:
             start = at + len(words)
             if words in self._contrast and start < len(tokens):
                 ends = {m.end for m in mentions[start]}
-                ends |= {c.end for c in clauses[start] if c.kind in ("goal", "ellipsis")}
+                # "The tray not full" says something of the tray; "... shut, not open" only says it again.
+                said = any(c.end == at for there in clauses[:at] for c in there)
+                against = [c for c in clauses[start] if c.kind in ("goal", "ellipsis")]
+                ends |= {c.end for c in against if said or c.kind == "goal" or c.bindings}
                 yield from (Fragment(end, CONTRAST_COST) for end in ends)
 
     def _given_reasons(
