@@ -147,7 +147,9 @@ class Background:
             return
         if _CONDITIONS & set(rest) or _CORRECTING & set(rest) or BREAK in rest or COMMA in rest:
             return
-        if not any(c.end > at + 2 for c in clauses[at]):
+        inside = (c for there in clauses[at + 1 :] for c in there)
+        meant = any(c.kind in ("goal", "ellipsis") and c.form == "base" for c in inside)
+        if not meant and not any(c.end > at + 2 for c in clauses[at]):
             yield at, size
 
     def _asks(self, tokens: Sequence[str], at: int, clauses: Sequence[Sequence[Clause]]) -> bool:

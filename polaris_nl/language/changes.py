@@ -56,6 +56,8 @@ _REFUSABLE = (
     "remove", "rename", "move", "move-before", "swap", "merge", "split", "cut-after", "remove-rest", "connect",
     "else", "unconditional", "between",
 )  # fmt: skip
+_TAKES_DOING = ("with", "by", "step", "one")
+"""Words behind which something to do may be said as "going to the kitchen"."""
 _BY_DOING = ("start", "by")
 """Words before which "going to the kitchen" is something to do."""
 NO_STEPS = "There are no steps yet; say what the robot should achieve first."
@@ -299,7 +301,9 @@ class Changes:
         """
         assert isinstance(span, tuple)
         said = list(tokens[span[0] : span[1]])
-        steps = self.steps(said, dialogue) or self.steps([*_BY_DOING, *said], dialogue)
+        steps = self.steps(said, dialogue)
+        if not steps and tokens[span[0] - 1] in _TAKES_DOING:
+            steps = self.steps([*_BY_DOING, *said], dialogue)
         if (
             not steps
             or not (steps[0].goals or steps[0].when)

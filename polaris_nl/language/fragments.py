@@ -57,6 +57,8 @@ _NO_EXCUSE = frozenset(
     )
 )  # fmt: skip
 """Words that what is only told doesn't have: with them it asks for something, or takes something back."""
+_NO_REMARK = frozenset(("if", "when", "once", "unless", "until", "till", "otherwise", "then"))
+"""Words that what is told of people doesn't have: what they say must not be lost."""
 _TOLD_WORDS = 12
 """Words within which what is told of a person ends."""
 _LEADING = frozenset(
@@ -220,7 +222,7 @@ class Fragments:
             if not self._clauses.fits(person, ("person", "message")):
                 continue
             for end in range(verb + 1, min(verb + _TOLD_WORDS, len(tokens)) + 1):
-                if tokens[end - 1] in (BREAK, COMMA):
+                if tokens[end - 1] in (BREAK, COMMA) or tokens[end - 1] in _NO_REMARK:
                     break
                 goes_on = end < len(tokens) and (
                     tokens[end] in (BREAK, COMMA, "so", "and", "but") or clauses[end]

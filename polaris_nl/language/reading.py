@@ -97,7 +97,7 @@ class _Reader:
         elif item.mark in ("then", "break"):
             if item.mark == "break":
                 self.done.sentence = len(self.done.steps)
-            if not (self._how == "until" and self._when):
+            if self.done.steps and not (self._how == "until" and self._when):
                 self.done.flush()
             self.done.new_step = True
             self._sequel = item.mark == "then" and item.text in _SEQUELS
@@ -129,6 +129,10 @@ class _Reader:
                 )
             self.done.hear_fact(item)
         elif item.role == "topic" and item.mention is not None:
+            if self._in_an_order() and self._at_an_end():
+                raise Misfit(
+                    f"I can't make a goal of {item.text}; say what the robot should do then."
+                )
             self.done.hear_named(item.mention)
 
     def _nothing(self) -> None:
@@ -152,6 +156,8 @@ class _Reader:
             # "Before you go home, wait until she is in": going home waits for it.
             self.done.steps.append(Step(self.done.deferred, self._when, "condition", self._waits))
             self._when, self._how, self.done.deferred = (), "", ()
+        if self.done.deferred and not self.done.steps:
+            raise Misfit("What should come before that? Say it in one sentence.")
         self.done.flush()
         if any(step == Step() for step in self.done.steps):
             raise Misfit("Then there is nothing to do; say what the robot should achieve, or undo.")
@@ -208,7 +214,7 @@ class _Reader:
     def _in_an_order(self) -> bool:
         """Whether the latest item stands before or after "then", so that it isn't only told."""
         around = (self.items[self.at - 2 : self.at - 1], self.items[self.at : self.at + 1])
-        return any(i.mark == "then" and "then" in i.text.split() for there in around for i in there)
+        return any(i.mark == "then" for there in around for i in there)
 
     def _at_an_end(self) -> bool:
         """Whether no goal follows at once: "first" is said of what came before it."""

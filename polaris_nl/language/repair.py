@@ -56,6 +56,10 @@ class Repairs:
         corrected = self._corrected(tokens, mentions, self._markers)
         yield from _different(tokens, (w for c in corrected for w in (c, _without_commas(c))))
 
+    def without_fillers(self, tokens: Sequence[str]) -> list[str]:
+        """Tokens without fillers inside of what is said: "put it please on the counter"."""
+        return self._bare(tokens)
+
     def candidates(
         self, tokens: Sequence[str], mentions: Sequence[Sequence[Mention]]
     ) -> Iterator[list[str]]:
@@ -152,6 +156,8 @@ class Repairs:
         at = 1
         while at < len(tokens):
             size = markers.length_at(tokens, at)
+            if tokens[at] == "like" and tokens[at - 1] in ("would", "'d", "should"):
+                size = 0  # "I would like" is no hesitation.
             if size:
                 before, rest = _bare_end(list(tokens[:at])), list(tokens[at + size :])
                 rest = _bare_start(rest)
