@@ -169,6 +169,8 @@ class Fragments:
                 yield Fragment(mention.end, CALLED_COST, "topic", mention)
             if mention.candidates or mention.parts:
                 rest = tokens[mention.end : mention.end + 8]
+                if mention.quantifier == "all" and "it" in rest:
+                    continue  # "Everything on the desk, put it there" is about more than one thing.
                 if mention.end < len(tokens) and _PRONOUNS & set(rest):
                     yield Fragment(mention.end, TOPIC_COST, "topic", mention)
 
