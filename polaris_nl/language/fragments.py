@@ -69,6 +69,7 @@ _LEADING_PAIRS = (("after", "that"), ("after", "this"), ("of", "all"))
 _PRONOUNS = frozenset(
     {"it", "them", "they", "one", "ones", "these", "those", "that", "both", "him", "her", "there"}
 )
+_SEVERAL = frozenset({"them", "they", "these", "those", "both", "there"})
 Mentions = Sequence[Sequence[Mention]]
 Clauses = Sequence[Sequence[Clause]]
 
@@ -169,7 +170,7 @@ class Fragments:
                 yield Fragment(mention.end, CALLED_COST, "topic", mention)
             if mention.candidates or mention.parts:
                 rest = tokens[mention.end : mention.end + 8]
-                if mention.quantifier == "all" and "it" in rest:
+                if mention.quantifier == "all" and not _SEVERAL & set(rest):
                     continue  # "Everything on the desk, put it there" is about more than one thing.
                 if mention.end < len(tokens) and _PRONOUNS & set(rest):
                     yield Fragment(mention.end, TOPIC_COST, "topic", mention)
