@@ -14,14 +14,16 @@ from polaris_nl.automaton.edits import (
     SetGoals,
     apply_all,
 )
+from polaris_nl.language.afterthoughts import limited, narrowed, spared, step_about
 from polaris_nl.language.conditions import condition_in
 from polaris_nl.language.dialogue import Dialogue, Latest
 from polaris_nl.language.generate import goals_in_words, steps_in_words
 from polaris_nl.language.interpretation import Interpretation
+from polaris_nl.language.mention import Mention
 from polaris_nl.language.patterns import Match, Patterns
 from polaris_nl.language.protocol import Language
 from polaris_nl.language.reading import steps_of
-from polaris_nl.language.references import meant
+from polaris_nl.language.references import Reference, meant
 from polaris_nl.language.reshaping import (
     Reshaped,
     conditional,
@@ -54,6 +56,10 @@ _REFUSABLE = (
     "remove", "rename", "move", "move-before", "swap", "merge", "split", "cut-after", "remove-rest", "connect",
     "else", "unconditional", "between",
 )  # fmt: skip
+_TAKES_DOING = ("with", "by", "step", "one")
+"""Words behind which something to do may be said as "going to the kitchen"."""
+_BY_DOING = ("start", "by")
+"""Words before which "going to the kitchen" is something to do."""
 NO_STEPS = "There are no steps yet; say what the robot should achieve first."
 NOTHING_CHANGES = "It is like that already; nothing changes."
 MeantThen = tuple[Interpretation, Dialogue]
@@ -135,7 +141,12 @@ class Changes:
             name: meant(found, match.tokens, program, dialogue.scope)
             for name, found in match.references.items()
         }
+        for slot, other in (("x", "k"), ("y", "l")):
+            if slot in slots and intent != "together":
+                named[other] = self._about(slots[slot], (), program, dialogue)
         latest = _latest(program, dialogue)
+        if intent in ("limit", "spare"):
+            return self._limited(match, latest, program, dialogue)
         if intent == "remove-latest":
             return removed_latest(program, int(str(slots["q"])), latest)
         if intent in ("at-start", "before-that"):
@@ -164,10 +175,13 @@ class Changes:
                 raise Misfit("")
             step = Step(program.checkpoints[this].goals, when, "condition")
             return conditional(program, this, when, steps_in_words([step], self._language.wording))
-        if intent in ("replace", "also"):
+        if intent in ("replace", "also", "together"):
             goals, _ = self.goals(match.tokens, slots.get("g"), dialogue)
             words = goals_in_words(goals, self._language.wording)
-            if intent == "also":
+            if intent == "together":
+                this = self._about(slots["y"], goals, program, dialogue)
+                name = program.checkpoints[this].name
+            if intent != "replace":
                 kept = program.checkpoints[this].goals
                 return [SetGoals(this, (*kept, *goals))], f"in {name}, also {words}", [this]
             incoming = program.incoming(this)
@@ -176,6 +190,35 @@ class Changes:
             )
             return [SetGoals(this, goals), *names], f"in {name}: {words}", [this]
         return self._put(match, this, program, dialogue, named.get("l"))
+
+    def _about(
+        self, thing: object, alike: Sequence[Goal], program: Automaton, dialogue: Dialogue
+    ) -> str:
+        """The step that is about a thing: "do the bowls first", "the plate along with the cup"."""
+        assert isinstance(thing, Mention)
+        touched = [c for c in dialogue.touched if c in program.checkpoints]
+        spoken_of = [(r,) for r in reversed(dialogue.scope.referents)]
+        if not thing.pronoun:
+            named = self._language.resolver.meant(thing, (), dialogue.scope).entities
+            return step_about([named], alike, touched, program)
+        return step_about(spoken_of, alike, touched, program)
+
+    def _limited(
+        self, match: Match, latest: str, program: Automaton, dialogue: Dialogue
+    ) -> Reshaped:
+        """A condition that is said behind a step: "but only if she is in", "unless it's open"."""
+        when = condition_in(self._language, match.tokens, match.slots["f"], dialogue.scope)
+        if not when or latest == START:
+            raise Misfit("")
+        several = tuple(c for c in reversed(dialogue.touched) if c in program.checkpoints)
+        whole = Reference(0, len(match.tokens), several or (latest,))
+        this = meant(whole, match.tokens, program, dialogue.scope)
+        if match.intent == "spare":
+            return spared(program, this, when, self._language.names)
+        incoming = program.incoming(this)
+        when = narrowed(incoming.when if incoming else (), when)
+        step = Step(program.checkpoints[this].goals, when, "condition")
+        return limited(program, this, when, steps_in_words([step], self._language.wording))
 
     def _put(
         self,
@@ -257,7 +300,10 @@ class Changes:
             Unclear: a question has to be asked.
         """
         assert isinstance(span, tuple)
-        steps = self.steps(list(tokens[span[0] : span[1]]), dialogue)
+        said = list(tokens[span[0] : span[1]])
+        steps = self.steps(said, dialogue)
+        if not steps and tokens[span[0] - 1] in _TAKES_DOING:
+            steps = self.steps([*_BY_DOING, *said], dialogue)
         if (
             not steps
             or not (steps[0].goals or steps[0].when)

@@ -27,6 +27,7 @@ from polaris_nl.language.cores import AROUND, Core, Cores, trimmed
 from polaris_nl.language.dialogue import Dialogue, Latest
 from polaris_nl.language.exchange import exchanged, used_in, without
 from polaris_nl.language.generate import goals_in_words, steps_in_words
+from polaris_nl.language.goal_relations import flat
 from polaris_nl.language.interpretation import Interpretation
 from polaris_nl.language.mention import Mention
 from polaris_nl.language.patterns import Match, Patterns
@@ -143,6 +144,8 @@ class Corrections:
         if "k" in match.references:
             where = [meant(match.references["k"], match.tokens, program, dialogue.scope)]
             rest = []
+        if "f" in match.slots:
+            where, rest = self._waiting(match, program, dialogue), []
         if match.intent == "leave-out":
             return self._left_out(match, where, rest, program, dialogue)
         new, old = match.slots["x"], match.slots.get("y")
@@ -165,6 +168,18 @@ class Corrections:
                 put = listed([wording.entity(e) for e in entities])
                 return edits, f"I've put {put} in place of {wording.entity(replaced)}"
         return None
+
+    def _waiting(self, match: Match, program: Automaton, dialogue: Dialogue) -> list[str]:
+        """The steps that wait for something: "if she dismisses it, go to the hall instead of home".
+
+        Raises:
+            Misfit: there is none.
+        """
+        when = condition_in(self._language, match.tokens, match.slots["f"], dialogue.scope)
+        ways = [t for t in program.transitions.values() if t.when and t.conditional == set(when)]
+        if not ways:
+            raise Misfit("")
+        return [c for t in ways for c in program.subtree(t.target)]
 
     def _groups(
         self, touched: Sequence[str], rest: Sequence[str], old: object
@@ -278,7 +293,10 @@ class Corrections:
         """`don't go home, go to the kitchen`, where going home was asked for: that step is gone, or another."""
         there = [c for c in program.checkpoints if c != START]
         for end in range(len(core.tokens), 2, -1):
-            steps = self._changes.steps(core.tokens[:end], dialogue)
+            try:
+                steps = self._changes.steps(core.tokens[:end], dialogue)
+            except Unclear:
+                continue  # "Don't put the cup in the bin, put it": not all of what was said.
             if len(steps) != 1 or not steps[0].forbidden or steps[0].when:
                 continue
             left = negated(steps[0].goals, there, program)
@@ -291,6 +309,10 @@ class Corrections:
             if not self._language.asks_for(rest):
                 return None  # "Don't go home before you have filled the tray."
             touched = [e.checkpoint for e in left[0] if isinstance(e, RemoveCheckpoint | SetGoals)]
+            # "Don't put the napkin in the bin, put it in the drawer": it is the napkin.
+            for goal in flat(steps[0].forbidden):
+                scope = dialogue.scope.after(goal.args[1:]).after(goal.args[:1])
+                dialogue = replace(dialogue, scope=scope)
             return self._sentence(utterance, Core(tuple(rest), 2), touched, program, dialogue)
         return None
 

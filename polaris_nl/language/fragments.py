@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal as OneOf
 
+from polaris_nl.language.background import Background
 from polaris_nl.language.clauses import Clause, ClauseFinder
 from polaris_nl.language.common import Common
 from polaris_nl.language.mention import Mention
@@ -30,7 +31,24 @@ _OPENERS = PhraseSet(
 )
 """Words that begin a request behind what is only told: "my hands are full, could you ..."."""
 _EXCUSING = frozenset(
-    ("is", "are", "am", "'m", "has", "have", "'ve", "had", "can", "could", "do", "does")
+    (
+        "is",
+        "are",
+        "am",
+        "'m",
+        "'s",
+        "'ll",
+        "will",
+        "was",
+        "has",
+        "have",
+        "'ve",
+        "had",
+        "can",
+        "could",
+        "do",
+        "does",
+    )
 )
 _NO_EXCUSE = frozenset(
     (
@@ -39,6 +57,8 @@ _NO_EXCUSE = frozenset(
     )
 )  # fmt: skip
 """Words that what is only told doesn't have: with them it asks for something, or takes something back."""
+_NO_REMARK = frozenset(("if", "when", "once", "unless", "until", "till", "otherwise", "then"))
+"""Words that what is told of people doesn't have: what they say must not be lost."""
 _TOLD_WORDS = 12
 """Words within which what is told of a person ends."""
 _LEADING = frozenset(
@@ -49,6 +69,7 @@ _LEADING_PAIRS = (("after", "that"), ("after", "this"), ("of", "all"))
 _PRONOUNS = frozenset(
     {"it", "them", "they", "one", "ones", "these", "those", "that", "both", "him", "her", "there"}
 )
+_SEVERAL = frozenset({"them", "they", "these", "those", "both", "there"})
 Mentions = Sequence[Sequence[Mention]]
 Clauses = Sequence[Sequence[Clause]]
 
@@ -83,6 +104,7 @@ class Fragments:
         self._telling = frozenset(word for p in common.telling for word in p)
         phrases = (*self._excepting, *self._contrast, *self._reasons)
         self._longest = max(map(len, phrases), default=0)
+        self._background = Background(common)
 
     def at(
         self, tokens: Sequence[str], at: int, mentions: Mentions, clauses: Clauses
@@ -104,6 +126,10 @@ class Fragments:
         yield from self._beneficiaries(tokens, at, mentions)
         yield from self._told_of_people(tokens, at, mentions, clauses)
         yield from self._excuses(tokens, at, mentions, clauses)
+        for start, end in self._background.at(tokens, at, mentions, clauses):
+            named = tuple(_named(mentions, start, end))
+            told = Mention(start, end, " ".join(tokens[start:end]), parts=named)
+            yield Fragment(end, TELLING_COST + REASON_WORD_COST * (end - start), "topic", told)
 
     def _phrases(self, tokens: Sequence[str], at: int) -> Iterator[tuple[str, ...]]:
         for end in range(min(len(tokens), at + self._longest), at, -1):
@@ -144,6 +170,8 @@ class Fragments:
                 yield Fragment(mention.end, CALLED_COST, "topic", mention)
             if mention.candidates or mention.parts:
                 rest = tokens[mention.end : mention.end + 8]
+                if mention.quantifier == "all" and not _SEVERAL & set(rest):
+                    continue  # "Everything on the desk, put it there" is about more than one thing.
                 if mention.end < len(tokens) and _PRONOUNS & set(rest):
                     yield Fragment(mention.end, TOPIC_COST, "topic", mention)
 
@@ -155,7 +183,10 @@ class Fragments:
             start = at + len(words)
             if words in self._contrast and start < len(tokens):
                 ends = {m.end for m in mentions[start]}
-                ends |= {c.end for c in clauses[start] if c.kind in ("goal", "ellipsis")}
+                # "The tray not full" says something of the tray; "... shut, not open" only says it again.
+                said = any(c.end == at for there in clauses[:at] for c in there)
+                against = [c for c in clauses[start] if c.kind in ("goal", "ellipsis")]
+                ends |= {c.end for c in against if said or c.kind == "goal" or c.bindings}
                 yield from (Fragment(end, CONTRAST_COST) for end in ends)
 
     def _given_reasons(
@@ -194,7 +225,7 @@ class Fragments:
             if not self._clauses.fits(person, ("person", "message")):
                 continue
             for end in range(verb + 1, min(verb + _TOLD_WORDS, len(tokens)) + 1):
-                if tokens[end - 1] in (BREAK, COMMA):
+                if tokens[end - 1] in (BREAK, COMMA) or tokens[end - 1] in _NO_REMARK:
                     break
                 goes_on = end < len(tokens) and (
                     tokens[end] in (BREAK, COMMA, "so", "and", "but") or clauses[end]
@@ -209,7 +240,7 @@ class Fragments:
         self, tokens: Sequence[str], at: int, mentions: Mentions, clauses: Clauses
     ) -> Iterator[Fragment]:
         """`my hands are full, could you ...`, `... I've got my hands full`: why it is asked for."""
-        first = at == 0 or tokens[at - 1] in (BREAK, COMMA)
+        first = self._background.begins(tokens, at) or tokens[at - 1] in (BREAK, COMMA)
         own = tokens[at] in ("my", "our", "i", "we")
         people = [m for m in mentions[at] if m.candidates and self._clauses.fits(m, ("person",))]
         if not own and not (first and people):
@@ -219,8 +250,9 @@ class Fragments:
             if tokens[end - 1] in _NO_EXCUSE:
                 return
             ends = end == len(tokens) or tokens[end] == BREAK
-            opener = _OPENERS.length_at(tokens, end + (tokens[end : end + 1] == [COMMA]))
-            asked = end + (tokens[end : end + 1] == [COMMA]) + opener
+            opening = end + (tokens[end : end + 1] == [COMMA] or tokens[end : end + 1] == ["um"])
+            opener = _OPENERS.length_at(tokens, opening)
+            asked = opening + opener
             requested = (
                 opener and asked < len(tokens) and any(c.kind == "goal" for c in clauses[asked])
             )

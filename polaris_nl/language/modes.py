@@ -22,8 +22,12 @@ Mode = OneOf[
 
 PRESENT_COST = 0.15
 """What it costs to take "once you go there" for something to do, rather than for a condition."""
+UNDOING_COST = 0.1
+"""What it costs to take "once you have put it down" for something to do, rather than for a condition."""
 SMALL_COST = 0.7
 """What it costs to let a state lean on the verb of the one before: "... and the cupboard closed"."""
+LEANING_COST = 0.5
+"""What it costs to let a state lean on a condition: "once the cup is clean and the plate in the sink, ..."."""
 WISH_COST = 0.15
 """What it costs to take "if ..., and the cup is not on the desk" for a wish, rather than for a condition."""
 ASSURED_COST = 0.2
@@ -62,7 +66,7 @@ def roles(mode: Mode, clause: Clause, before: str) -> Iterator[tuple[Role, float
     """
     if clause.form != "base":
         if mode == "event":
-            yield "goal", 0.0, "plain"
+            yield "goal", 0.0 if clause.positive else UNDOING_COST, "plain"
     elif mode == "telling":
         if clause.kind in ("told", "state"):
             yield "fact", 0.0, "plain"
@@ -76,8 +80,10 @@ def roles(mode: Mode, clause: Clause, before: str) -> Iterator[tuple[Role, float
             yield "goal", 0.0, "assured"
         if mode == "assured" and before in _JOINERS:
             yield "goal", ASSURED_COST, "assured"
+        if mode == "either" and before == "and":
+            yield "condition", LEANING_COST, "after-condition"
         alone = before in ("", BREAK) and len(clause.bindings) == 1  # "Fridge shut, please."
-        if mode == "plain" and (before in _JOINERS or alone):
+        if mode == "plain" and (before in (*_JOINERS, "then") or alone):
             yield "goal", SMALL_COST, "plain"
     elif clause.kind == "wish":
         if mode in (*OPEN, "state"):

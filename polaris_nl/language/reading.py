@@ -99,7 +99,8 @@ class _Reader:
         elif item.mark in ("then", "break"):
             if item.mark == "break":
                 self.done.sentence = len(self.done.steps)
-            self.done.flush()
+            if self.done.steps and not (self._how == "until" and self._when):
+                self.done.flush()
             self.done.new_step = True
             self._sequel = item.mark == "then" and item.text in _SEQUELS
             self._first = bool(self.done.steps) and item.text.split()[:1] == [_BUT_FIRST]
@@ -124,8 +125,16 @@ class _Reader:
         elif item.role == "except":
             self.done.leave_out(item)
         elif item.role == "fact":
+            if self._in_an_order():
+                raise Misfit(
+                    'Should that be waited for, or done? Say "once ...", or what the robot should do.'
+                )
             self.done.hear_fact(item)
         elif item.role == "topic" and item.mention is not None:
+            if self._in_an_order() and self._at_an_end():
+                raise Misfit(
+                    f"I can't make a goal of {item.text}; say what the robot should do then."
+                )
             self.done.hear_named(item.mention)
 
     def _nothing(self) -> None:
@@ -145,6 +154,12 @@ class _Reader:
         Raises:
             Misfit: something is missing.
         """
+        if self._how == "until" and self._when and self.done.deferred:
+            # "Before you go home, wait until she is in": going home waits for it.
+            self.done.steps.append(Step(self.done.deferred, self._when, "condition", self._waits))
+            self._when, self._how, self.done.deferred = (), "", ()
+        if self.done.deferred and not self.done.steps:
+            raise Misfit("What should come before that? Say it in one sentence.")
         self.done.flush()
         if any(step == Step() for step in self.done.steps):
             raise Misfit("Then there is nothing to do; say what the robot should achieve, or undo.")
@@ -177,7 +192,8 @@ class _Reader:
             # "Before you go to the kitchen, close it" is about the robot's own acts.
             self.done.deferred = when
         else:
-            self.finish()
+            if not (mark == "until" and self.done.deferred):
+                self.finish()
             self._when, self._how = when, mark
             self._waits = self._sequel or mark == "until"
         self.done.new_step, self._sequel = True, False
@@ -197,6 +213,11 @@ class _Reader:
         self.at += 1
         self.done.choose(following)
 
+    def _in_an_order(self) -> bool:
+        """Whether the latest item stands before or after "then", so that it isn't only told."""
+        around = (self.items[self.at - 2 : self.at - 1], self.items[self.at : self.at + 1])
+        return any(i.mark == "then" for there in around for i in there)
+
     def _at_an_end(self) -> bool:
         """Whether no goal follows at once: "first" is said of what came before it."""
         return bool(self.done.steps) and (
@@ -212,17 +233,18 @@ class _Reader:
         Raises:
             Misfit: no goal follows.
         """
+        said = self.items[self.at - 1]
         while self.at < len(self.items) and self.items[self.at].mark == "comma":
             self.at += 1
         item = self.items[self.at] if self.at < len(self.items) else None
         if item is None or item.role != "goal":
             raise Misfit("Before or after what? Say it in one sentence.")
         self.at += 1
-        goals = self.done.literals(item, condition=False)
+        goals = (*self.done.literals(item, condition=False), *self._leaning())
         if self.at < len(self.items) and self.items[self.at].text in _FIRST:
             self.at += 1
         behind = bool(self.done.steps) and not self.done.new_step
-        late = self.items[self.at - 2].text.split() if self.at > 1 else []
+        late = said.text.split()
         if mark == "before" and self._how == "until" and self._when:
             # "Wait until she comes before you open it": the wait comes first.
             self.done.steps.append(Step(goals, self._when, "condition", self._waits))
@@ -232,7 +254,7 @@ class _Reader:
             last = self.done.steps.pop()
             later = replace(last, goals=last.forbidden or last.goals, forbidden=())
             self.done.put_in_front(goals, later)
-        elif mark == "before" and _without(self.items[self.at - 2]):
+        elif mark == "before" and _without(said):
             raise Misfit("I can only leave something out before I do something else.")
         elif mark == "before" and not behind:
             self.done.deferred = goals
@@ -244,6 +266,17 @@ class _Reader:
         elif not any(set(goals) <= set(step.goals) for step in self.done.steps):
             self.done.steps.append(Step(goals, done=True))
         self.done.new_step = not behind
+
+    def _leaning(self) -> tuple[Goal, ...]:
+        """Goals that lean on the one before: "before you've given her the book and him the glasses"."""
+        goals: list[Goal] = []
+        while self.at + 1 < len(self.items) and self.items[self.at].mark == "and":
+            clause = self.items[self.at + 1].clause
+            if clause is None or clause.kind != "ellipsis":
+                break
+            goals.extend(self.done.literals(self.items[self.at + 1], condition=False))
+            self.at += 2
+        return tuple(goals)
 
     def _condition_follows(self) -> bool:
         following = self.items[self.at + 1 :]
@@ -258,7 +291,12 @@ class _Reader:
         return goes_on or self._postposed
 
     def _attach(self, previous: Step, when: tuple[Literal, ...], mark: str) -> None:
-        if mark == "unless":
+        if mark == "unless" and previous.when:
+            # "When she comes, give it to her unless she has it."
+            if len(when) > 1:
+                raise Misfit("Say that in two sentences: what to wait for, and when not to do it.")
+            self.done.steps[-1] = replace(previous, when=(*previous.when, when[0].negation))
+        elif mark == "unless":
             self.done.steps[-1:] = [Step((), when, "condition"), replace(previous, role="else")]
         elif mark == "until" and previous.forbidden:
             # "Don't open it until she comes" is "when she comes, open it".
@@ -297,7 +335,14 @@ class _Reader:
         elif self.done.steps and not self._when and self.done.supersedes(goals):
             self.done.steps.pop()
             self.done.new_step = True
-        if self._unless:
+        elif self.done.steps and not self._when and self.done.was_found_for(goals):
+            self.done.steps[-1] = replace(self.done.steps[-1], goals=goals)
+            return
+        if self._unless and self._when and len(self._unless) == 1:
+            when = (*self._when, self._unless[0].negation)
+            self.done.steps.append(Step(goals, when, "condition", self._waits))
+            self._when, self._how, self._unless = (), "", ()
+        elif self._unless:
             self.done.steps.append(Step((), self._unless, "condition"))
             self.done.steps.append(Step(goals, (), "else"))
             self._unless = ()

@@ -24,6 +24,7 @@ from polaris_nl.model.world import World
 KIND_RANK = 3
 """The rank of a candidate of which only the type was named."""
 _INDEFINITE = ("a ", "an ", "any ", "some ", "one of ")
+_POINTING = ("that ", "this ")
 _PLACE_PREDICATES = ("at", "in", "person-in", "located", "has")
 
 
@@ -159,6 +160,11 @@ class Referents:
             return [c.entity for c in candidates if c.rank < KIND_RANK] or [
                 c.entity for c in candidates
             ]
+        if mention.text.startswith(_POINTING):
+            # "That cup" is the one spoken of, even if another is called just so.
+            spoken_of = [r for r in scope.referents if r in {c.entity for c in candidates}]
+            if spoken_of:
+                return spoken_of[-1:]
         best = min(c.rank for c in candidates)
         return [c.entity for c in candidates if c.rank == best]
 

@@ -56,6 +56,10 @@ class Repairs:
         corrected = self._corrected(tokens, mentions, self._markers)
         yield from _different(tokens, (w for c in corrected for w in (c, _without_commas(c))))
 
+    def without_fillers(self, tokens: Sequence[str]) -> list[str]:
+        """Tokens without fillers inside of what is said: "put it please on the counter"."""
+        return self._bare(tokens)
+
     def candidates(
         self, tokens: Sequence[str], mentions: Sequence[Sequence[Mention]]
     ) -> Iterator[list[str]]:
@@ -92,16 +96,17 @@ class Repairs:
     def _for_each(
         self, tokens: list[str], mentions: Sequence[Sequence[Mention]]
     ) -> Iterator[list[str]]:
-        """`for each cup, bring it here` is "bring each cup here"."""
-        if len(tokens) < 3 or tokens[0] != "for" or not mentions:
+        """`for each cup, bring it here`, `everything there, bring it here`: "bring each cup here"."""
+        start = int(tokens[:1] == ["for"])
+        if len(tokens) < 3 or not mentions:
             return
-        for mention in mentions[1]:
+        for mention in mentions[start]:
             taken_up = next(
                 (i for i in range(mention.end, len(tokens)) if tokens[i] in _TAKEN_UP), None
             )
             if mention.quantifier and taken_up is not None:
                 rest = _bare_start(tokens[mention.end : taken_up])
-                yield [*rest, *tokens[1 : mention.end], *tokens[taken_up + 1 :]]
+                yield [*rest, *tokens[start : mention.end], *tokens[taken_up + 1 :]]
 
     def _undescribed(self, tokens: list[str], mentions: Sequence[Sequence[Mention]]) -> list[str]:
         """Tokens without adjectives in front of names that mean one thing only: "the old brown tray"."""
@@ -152,6 +157,8 @@ class Repairs:
         at = 1
         while at < len(tokens):
             size = markers.length_at(tokens, at)
+            if tokens[at] == "like" and tokens[at - 1] in ("would", "'d", "should"):
+                size = 0  # "I would like" is no hesitation.
             if size:
                 before, rest = _bare_end(list(tokens[:at])), list(tokens[at + size :])
                 rest = _bare_start(rest)

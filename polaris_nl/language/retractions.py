@@ -28,11 +28,12 @@ def place_of(goals: Sequence[Goal], touched: Sequence[str], program: Automaton) 
 
     def is_alike(checkpoint: str) -> bool:
         there = flat(program.checkpoints[checkpoint].goals)
-        return moves(checkpoint) or any(g.predicate in predicates for g in there)
+        return any(g.predicate in predicates for g in there)
 
+    made = [c for c in reversed(list(program.checkpoints)) if c != START]
+    same = (c for c in (*reversed(touched), *made) if moves(c))
     near = (c for c in reversed(touched) if is_alike(c))
-    rest = (c for c in reversed(list(program.checkpoints)) if c != START and moves(c))
-    return next(near, None) or next(rest, None)
+    return next(same, None) or next(near, None)
 
 
 def negated(

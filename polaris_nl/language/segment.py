@@ -21,6 +21,9 @@ from polaris_nl.language.tokens import BREAK, COMMA
 UNKNOWN_COST = 10.0
 FILLER_COST = 0.02
 MARK_COST = 0.1
+PLAIN_COST = 0.05
+"""Less than other connectives, for those that say a whole thing: "if he's not, put it there" is another way on
+before it's a condition, "after you've told her, go home" an order of acts."""
 ASIDE_COST = 0.2
 WIDTH = 6
 """Partial readings kept at each position and mode."""
@@ -164,7 +167,8 @@ def _steps(
         after = after_mark(mode, mark)
         goes_on = goes_on or after == mode
         if after is not None:
-            yield end, MARK_COST, Item("mark", " ".join(tokens[at:end]), mark=mark), after
+            cost = PLAIN_COST if mark in ("else", "done") else MARK_COST
+            yield end, cost, Item("mark", " ".join(tokens[at:end]), mark=mark), after
     for end, cost in fillers:
         yield end, cost, None, mode
     if tokens[at] not in (BREAK, COMMA):

@@ -76,6 +76,11 @@ class Statements:
             corrected = self._repairs.corrections(tokens, mentions)
             best = self._first(utterance, corrected, program, dialogue)
         best = best or self._best(utterance, good, program, dialogue)
+        if best is not None and best[0].outcome == "question" and mendable:
+            plain = self._first(
+                utterance, [self._repairs.without_fillers(tokens)], program, dialogue
+            )
+            best = plain if plain is not None and plain[0].outcome == "applied" else best
         if best is None and mendable:
             candidates = self._repairs.candidates(tokens, mentions)
             best = self._first(utterance, candidates, program, dialogue)

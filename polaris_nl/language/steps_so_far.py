@@ -53,6 +53,8 @@ class StepsSoFar:
     def move_to_front(self) -> None:
         """The latest step comes before the others of its sentence."""
         *before, last = self.steps
+        if last.role == "else":
+            return  # "Otherwise wash it first and then ...": nothing of that branch comes before it.
         self.steps = [*before[: self.sentence], last, *before[self.sentence :]]
         self.new_step = True
 
@@ -178,6 +180,11 @@ class StepsSoFar:
         """Whether the latest step was only the way to goals said in the same breath."""
         last = self.steps[-1]
         return superseded(last, goals) and (not self.new_step or bool(last.forbidden))
+
+    def was_found_for(self, goals: Sequence[Goal]) -> bool:
+        """Whether a thing was only to be found for these goals: "if it's lost, find it and bring it to her"."""
+        last = replace(self.steps[-1], when=(), role="then")
+        return self.sought and not self.new_step and superseded(last, goals)
 
     def are_separate(self, goals: Sequence[Goal]) -> bool:
         """Whether goals joined by "and" are a step of their own."""

@@ -8,6 +8,7 @@ part of the speech set that is set aside.
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 
@@ -19,7 +20,15 @@ from polaris_nl.language.understanding import Understanding
 from polaris_nl.model.world_file import load_world
 
 FOLDER = Path(__file__).parent / "requests"
-RIGHT, WRONG = 0.92, 0.02
+FLOORS: Mapping[str, tuple[float, float]] = {
+    "care": (0.92, 0.02),
+    "hands-full": (0.92, 0.02),
+    "visitors": (0.92, 0.02),
+    "programmers": (0.92, 0.02),
+    "organisers": (0.81, 0.01),
+    "newcomers": (0.44, 0.01),
+}
+"""For each file, the share that must be understood rightly, and that may be understood wrongly."""
 
 
 @cache
@@ -34,13 +43,13 @@ def outcome(context: Context, said: str, expected: str) -> str:
     return "wrong" if meaning.startswith(("start", "command")) else "refused or asked"
 
 
-@pytest.mark.parametrize("name", ["care", "hands-full", "visitors", "programmers"])
+@pytest.mark.parametrize("name", FLOORS)
 def test_requests_are_understood(name: str) -> None:
     found: Counter[str] = Counter()
     for group in yaml.safe_load((FOLDER / f"{name}.yaml").read_text(encoding="utf-8")):
         context = Context(understanding(group["world"]), tuple(group.get("after", ())))
         found.update(outcome(context, said, expected) for said, expected in group["say"].items())
-    total = found.total()
+    total, (right, wrong) = found.total(), FLOORS[name]
     assert total > 200
-    assert found["right"] >= RIGHT * total, found
-    assert found["wrong"] <= WRONG * total, found
+    assert found["right"] >= right * total, found
+    assert found["wrong"] <= wrong * total, found

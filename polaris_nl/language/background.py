@@ -1,0 +1,166 @@
+"""What is told around a request and asks for nothing: "it's too warm here so ...", "for the starter ..."."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from polaris_nl.language.clauses import Clause
+from polaris_nl.language.common import Common
+from polaris_nl.language.mention import Mention
+from polaris_nl.language.tokens import BREAK, COMMA, PhraseSet
+
+Span = tuple[int, int]
+_SUBJECTS = frozenset(
+    ("i", "we", "you", "they", "he", "she", "it", "that", "this", "there", "people", "everybody", "my", "our")
+)  # fmt: skip
+"""Words that a sentence about something else can begin with, besides what has a name."""
+_BE_OR_DO = frozenset(
+    (
+        "is", "are", "am", "was", "were", "be", "been", "'s", "'m", "'re", "'ve", "'d", "'ll", "has", "have",
+        "had", "can", "could", "will", "would", "do", "does", "did", "gets", "get", "needs", "need", "wants",
+        "want", "looks", "keeps", "keep", "never",
+    )
+)  # fmt: skip
+_LATE = {
+    "he": ("is", "'s", "'ll", "will", "likes", "wants", "needs"),
+    "she": ("is", "'s", "'ll", "will", "likes", "wants", "needs"),
+    "it": ("is", "'s", "'ll", "will", "looks", "gets"),
+    "that": ("is", "'s", "'ll", "will", "looks"),
+    "they": ("are", "'re", "'ve", "'ll", "will", "keep", "like", "want", "have"),
+}
+"""How a sentence behind a request begins that only says why: "... she'll be wanting her tea"."""
+_CONDITIONS = frozenset(
+    ("if", "when", "once", "unless", "until", "till", "after", "before", "otherwise")
+)
+_CORRECTING = frozenset(
+    ("mean", "meant", "said", "wrong", "instead", "stop", "then", "not", "mind", "changed")
+)
+_SO = "so"
+_FOR = "for"
+_MOST_TOLD = 16
+_MOST_OCCASION = 7
+_LEAST_LATE = 4
+"""Words that a sentence behind a request has at least."""
+_MOST_LATE = 10
+_SMALL = frozenset(
+    (
+        "the",
+        "a",
+        "an",
+        "her",
+        "his",
+        "my",
+        "our",
+        "your",
+        "their",
+        "of",
+        "to",
+        "and",
+        "this",
+        "that",
+    )
+)
+
+
+class Background:
+    """Finds what is told around requests.
+
+    Args:
+        common: words that every domain shares.
+    """
+
+    def __init__(self, common: Common) -> None:
+        leads = (*common.fillers, *common.assure, *common.connectives.get("polite", ()))
+        self._leads = PhraseSet(leads)
+        self._fillers = PhraseSet((*common.fillers, *common.hesitations))
+
+    def at(
+        self,
+        tokens: Sequence[str],
+        at: int,
+        mentions: Sequence[Sequence[Mention]],
+        clauses: Sequence[Sequence[Clause]],
+    ) -> Iterator[Span]:
+        """The stretches of words that are told around a request from a position on, and only told."""
+        if self.begins(tokens, at):
+            yield from self._told_before(tokens, at, mentions, clauses)
+            yield from self._occasion(tokens, at, mentions, clauses)
+        elif at and tokens[at] in _LATE:
+            yield from self._told_behind(tokens, at, clauses)
+
+    def begins(self, tokens: Sequence[str], at: int) -> bool:
+        """Whether only fillers stand before a position."""
+        here = 0
+        while here < at:
+            step = 1 if tokens[here] in (BREAK, COMMA) else self._fillers.length_at(tokens, here)
+            if not step:
+                return False
+            here += step
+        return here == at
+
+    def _told_before(
+        self,
+        tokens: Sequence[str],
+        at: int,
+        mentions: Sequence[Sequence[Mention]],
+        clauses: Sequence[Sequence[Clause]],
+    ) -> Iterator[Span]:
+        """`the wine's been out all day so ...`: a sentence with a verb, and "so" before what is wanted."""
+        subjects = [m.end for m in mentions[at] if not m.pronoun]
+        if tokens[at] in _SUBJECTS:
+            subjects.append(at + 1)
+        if any(c.kind == "goal" for c in clauses[at]):
+            return
+        if not any(w in _BE_OR_DO for end in subjects for w in tokens[end : end + 3]):
+            return
+        for end in range(at + 3, min(at + _MOST_TOLD, len(tokens) - 1) + 1):
+            if tokens[end - 1] in _CONDITIONS or tokens[end - 1] in _CORRECTING - {"not"}:
+                return
+            if tokens[end] == _SO and self._asks(tokens, end + 1, clauses):
+                yield at, end + 1
+
+    def _occasion(
+        self,
+        tokens: Sequence[str],
+        at: int,
+        mentions: Sequence[Sequence[Mention]],
+        clauses: Sequence[Sequence[Clause]],
+    ) -> Iterator[Span]:
+        """`for the starter we need ...`: what something is wanted for, where that is nothing known."""
+        if tokens[at] != _FOR:
+            return
+        for end in range(at + 2, min(at + _MOST_OCCASION, len(tokens) - 1) + 1):
+            last = tokens[end - 1]
+            if last in _CONDITIONS or last in (BREAK, COMMA):
+                return
+            named = any(m.end == end for there in mentions[at + 1 : end] for m in there)
+            if last not in _SMALL and not named and self._asks(tokens, end, clauses):
+                yield at, end
+
+    def _told_behind(
+        self, tokens: Sequence[str], at: int, clauses: Sequence[Sequence[Clause]]
+    ) -> Iterator[Span]:
+        """`... she'll be wanting her tea`, at the end, where it is nothing that could be waited for."""
+        size = len(tokens)
+        rest = tokens[at:size]
+        if not _LEAST_LATE <= len(rest) <= _MOST_LATE or rest[1] not in _LATE[tokens[at]]:
+            return
+        if _CONDITIONS & set(rest) or _CORRECTING & set(rest) or BREAK in rest or COMMA in rest:
+            return
+        inside = (c for there in clauses[at + 1 :] for c in there)
+        meant = any(c.kind in ("goal", "ellipsis") and c.form == "base" for c in inside)
+        if not meant and not any(c.end > at + 2 for c in clauses[at]):
+            yield at, size
+
+    def _asks(self, tokens: Sequence[str], at: int, clauses: Sequence[Sequence[Clause]]) -> bool:
+        """Whether something is asked for at a position, politely or not."""
+        while at < len(tokens):
+            if tokens[at] == "if" or any(c.kind in ("goal", "wish") for c in clauses[at]):
+                return True
+            step = 1 if tokens[at] == COMMA else self._leads.length_at(tokens, at)
+            if not step:
+                return False
+            at += step
+            if at < len(tokens) and any(c.kind in ("state", "small") for c in clauses[at]):
+                return True
+        return False
