@@ -26,7 +26,7 @@ PER_CHOICE = 2
 """How often each choice of a wording occurs, where there is room."""
 OFTEN = 4
 """After so many names comes a pronoun again: no name is said as often."""
-SAID = 20
+SAID = 50
 """How often each of the requests comes up that people have made."""
 COMPOSED = 5_000
 """Phrases of two clauses, so that the ways from one clause into the next are heard too."""
