@@ -26,8 +26,8 @@ PER_CHOICE = 2
 """How often each choice of a wording occurs, where there is room."""
 OFTEN = 4
 """After so many names comes a pronoun again: no name is said as often."""
-SAID = 50
-"""How often each of the requests comes up that people have made."""
+SAID, MOST_SAID = 50, 40_000
+"""How often each of the requests comes up that people have made, and how often all of them at most."""
 COMPOSED = 5_000
 """Phrases of two clauses, so that the ways from one clause into the next are heard too."""
 
@@ -202,8 +202,9 @@ class _Maker:
 
     def said(self) -> Iterator[Sequence[str]]:
         """How people say things, with the world's names in turn."""
+        often = min(SAID, MOST_SAID // max(len(self._grammar.said), 1))
         for number, request in enumerate(self._grammar.said):
-            for turn in range(number, number + SAID):
+            for turn in range(number, number + often):
                 yield [
                     word
                     for place, part in enumerate(request)

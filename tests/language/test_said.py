@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from polaris_nl.language.grammar import load_grammar
-from polaris_nl.language.phrases import SAID, recogniser_phrases
+from polaris_nl.language.phrases import MOST_SAID, SAID, recogniser_phrases
 from polaris_nl.language.said import Open, read_said
 from polaris_nl.model.world_file import load_world
 
@@ -57,3 +57,12 @@ def test_a_domain_may_bring_its_own(tmp_path: Path) -> None:
     own = load_grammar(replace(shipped, path=tmp_path / "domain.pddl"))
     assert own.said == (("lunch", "for", Open("person", whole=True), "please"),)
     assert len(load_grammar(shipped).said) > 400
+
+
+def test_many_requests_come_up_less_often_each() -> None:
+    language = language_of("care-home")
+    said = tuple((f"request{chr(97 + n % 26)}", "please") for n in range(2 * MOST_SAID // SAID))
+    phrases = recogniser_phrases(language.world, replace(language.grammar, said=said))
+    assert (
+        sum(phrase.endswith(" please") and "request" in phrase for phrase in phrases) == MOST_SAID
+    )
