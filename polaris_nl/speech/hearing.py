@@ -1,40 +1,23 @@
-"""From what may have been said to what was said: the first reading that makes sense.
+"""From what may have been said to what was said: the reading that makes sense and that most speaks for.
 
-Vosk with phrases turns any speech into phrases. So every reading is parsed strictly, and the same
-audio is decoded freely: where the two differ too much, the words were not meant for the robot. The
-more a mistake would cost, the better the two must agree.
-
-With noise, the free decoding is the first to go astray. So the two are compared by likelihood, too, as
-in utterance verification with a filler model: phrases that explain the sound better than any words
-could are right whatever was heard freely, and those that explain it far worse are other people's talk.
+Every reading of the recogniser is parsed strictly. Whether it was meant for the robot is told by the free
+decoding of the same audio (`agreement`), and whether it is certain enough to be done also by the other
+readings (`doubt`).
 """
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
+from polaris_nl.speech.agreement import BREAK, difference, disagreement
 from polaris_nl.speech.doubt import Means, Reading, doubts, opposite
 from polaris_nl.speech.lexicon import SoundAlikes
 from polaris_nl.speech.recogniser import UNKNOWN, Spoken
 from polaris_nl.speech.repair import MOST_TRIED, Repairer, apart
 from polaris_nl.speech.weight import Weigh, Weight
 
-MOST_DIFFERENT: Mapping[Weight, float] = {
-    Weight.ASKING: 0.15, Weight.HARMLESS: 0.5, Weight.CHANGING: 0.5, Weight.MOVING: 0.45,
-}  # fmt: skip
-"""The most that free decoding may differ, in characters of the longer text."""
-SHORT, MORE_FOR_SHORT = 2, 0.15
-"""A few words are heard freely as others that sound alike: so many words may differ by so much more."""
-LONG, LONG_HARMLESS = 5, 0.2
-"""A question of so many words may differ by no more: there is much that other people's talk can pass for."""
-FOREIGN_WORDS, FEW_DIFFERENT = 2, 0.25
-"""So many words that mean nothing here, and sound like none of those heard, are other people's talk, unless
-the two decodings differ by no more than this."""
-SURE, UNLIKELY, UNLIKELY_HARMLESS = -0.5, -3.5, -2.5
-"""The gain in log-likelihood a word from which phrases are believed whatever was heard freely, and that below
-which they aren't; a question, which other people's talk most often passes for, must gain more."""
 UNHEARD = 8.0
 """By how much less a reading gains that none of the alternatives is."""
 NEAR = 0.2
@@ -46,8 +29,6 @@ RANK_COST, ASKING_COST, FREE_COST = 0.01, 0.15, 0.015
 part, and that nothing but the free decoding has it."""
 MOST_REPAIRED = 0.3
 """How different a repaired sentence may sound from what was heard freely."""
-
-BREAK = ". "
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,6 +73,10 @@ class Ways:
     alikes: SoundAlikes = field(default_factory=SoundAlikes)
     repairer: Repairer | None = None
 
+    def foreign(self, text: str, free: str) -> list[str]:
+        """The words heard freely that mean nothing here; none where that isn't known."""
+        return self.repairer.foreign(text, free) if self.repairer is not None else []
+
 
 def utterance(
     pieces: Sequence[Spoken], weigh: Weigh, ways: Ways = Ways(), means: Means = str
@@ -122,7 +107,7 @@ def utterance(
     different = difference(text, free)
     known = [gain for gain in gains if gain is not None]
     gain = sum(known) / len(text.split()) if text and len(known) == len(pieces) else None
-    why_not = _why_not(text, free, different, gain, weigh, ways)
+    why_not = disagreement(text, free, gain, weigh(text) if text else None, ways.foreign)
     if why_not:
         doubtful = ()
     elif doubtful:
@@ -167,35 +152,6 @@ def _opposites(found: _Found, piece: Spoken, ways: Ways) -> Iterator[_Found]:
             yield replace(found, pieces=[*found.pieces[:-1], last], reading=reading)
 
 
-def _why_not(
-    text: str, free: str, different: float, gain: float | None, weigh: Weigh, ways: Ways
-) -> str:
-    if not text:
-        return "no words"
-    if UNKNOWN in text:
-        return "unknown words"
-    weight = weigh(text)
-    if weight is None:
-        return "not understood"
-    words = len(text.split())
-    if gain is not None and words > SHORT and gain < _least(weight, words):
-        return f"it is likelier to be what was heard freely, by {-gain:.1f} a word"
-    if gain is not None and gain >= SURE and weight is not Weight.MOVING:
-        return ""
-    if different > _allowed(weight, words):
-        return f"heard freely it is {different:.2f} different"
-    if different > FEW_DIFFERENT and ways.repairer is not None:
-        foreign = ways.repairer.foreign(text, free)
-        if len(foreign) >= FOREIGN_WORDS:
-            return f"it is about {', '.join(foreign)}"
-    return ""
-
-
-def _least(weight: Weight, words: int) -> float:
-    """The least that so many words must gain in likelihood, a word."""
-    return UNLIKELY_HARMLESS if weight is Weight.HARMLESS and words >= LONG else UNLIKELY
-
-
 def _gain(piece: Spoken, reading: str, alikes: SoundAlikes) -> float | None:
     """By how much a reading explains a piece better than what was heard freely; None if unknown."""
     if not piece.gains:
@@ -204,28 +160,6 @@ def _gain(piece: Spoken, reading: str, alikes: SoundAlikes) -> float | None:
         if reading in alikes.put_back(text):
             return gain
     return piece.gains[0] - UNHEARD
-
-
-def _allowed(weight: Weight, words: int) -> float:
-    """How far the two decodings of so many words may be apart."""
-    if weight is Weight.HARMLESS and words >= LONG:
-        return LONG_HARMLESS
-    short = words <= SHORT and weight in (Weight.HARMLESS, Weight.MOVING)
-    return MOST_DIFFERENT[weight] + (MORE_FOR_SHORT if short else 0.0)
-
-
-def difference(text: str, free: str) -> float:
-    """How far the two decodings are apart, in characters of the longer one; 0 without a second one.
-
-    A few words are compared by their sound as well: freely, they are heard as others that sound alike.
-    """
-    from rapidfuzz.distance import Levenshtein
-
-    plain = text.replace(BREAK, " ")
-    if not free:
-        return 0.0
-    by_letter = float(Levenshtein.normalized_distance(plain, free))
-    return min(by_letter, apart(plain, free)) if len(plain.split()) <= SHORT else by_letter
 
 
 @dataclass(frozen=True, slots=True)
