@@ -10,6 +10,7 @@ could are right whatever was heard freely, and those that explain it far worse a
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 
 from polaris_nl.speech.recogniser import UNKNOWN
@@ -29,9 +30,11 @@ LONG, LONG_HARMLESS = 5, 0.2
 FOREIGN_WORDS, FEW_DIFFERENT = 2, 0.25
 """So many words that mean nothing here, and sound like none of those heard, are other people's talk, unless
 the two decodings differ by no more than this."""
-SURE, UNLIKELY, UNLIKELY_HARMLESS = -0.5, -3.5, -2.5
+SURE, UNLIKELY_HARMLESS = -0.5, -0.8
 """The gain in log-likelihood a word from which phrases are believed whatever was heard freely, and that below
-which they aren't; a question, which other people's talk most often passes for, must gain more."""
+which long questions aren't, which other people's talk most often passes for."""
+UNLIKELY: Sequence[tuple[float, float]] = ((3, -3.5), (5, -2.5), (math.inf, -1.5))
+"""The same for all else, for up to so many words: the more they are, the surer it is that others were meant."""
 
 
 def disagreement(
@@ -71,7 +74,9 @@ def disagreement(
 
 def _least(weight: Weight, words: int) -> float:
     """The least that so many words must gain in likelihood, a word."""
-    return UNLIKELY_HARMLESS if weight is Weight.HARMLESS and words >= LONG else UNLIKELY
+    if weight is Weight.HARMLESS and words >= LONG:
+        return UNLIKELY_HARMLESS
+    return next(least for most, least in UNLIKELY if words <= most)
 
 
 def _allowed(weight: Weight, words: int) -> float:

@@ -24,7 +24,7 @@ NEAR = 0.2
 """How far from the likeliest reading the free decoding may be to be one itself, where others make sense."""
 LOOKED_AT, TRIED = 4, 16
 """Readings that make sense, and readings of all, after which no more are looked at."""
-RANK_COST, ASKING_COST, FREE_COST = 0.01, 0.15, 0.015
+RANK_COST, ASKING_COST, FREE_COST = 0.02, 0.3, 0.015
 """What speaks against a reading besides its difference: each place in the list, that it makes sense only in
 part, and that nothing but the free decoding has it."""
 MOST_REPAIRED = 0.3

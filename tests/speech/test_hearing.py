@@ -170,10 +170,14 @@ def test_phrases_that_explain_it_far_worse_are_not_believed_even_where_the_words
 ):
     sentence = "why have you moved the cup"
     almost = "why have you moved a cup"
-    assert judged(-3.0, Weight.CHANGING, sentence, almost).accepted
-    said = judged(-3.0, Weight.HARMLESS, sentence, almost)
-    assert said.why_not == "it is likelier to be what was heard freely, by 3.0 a word"
-    assert not judged(-4.0, Weight.CHANGING, sentence, almost).accepted
+    assert judged(-1.2, Weight.CHANGING, sentence, almost).accepted
+    said = judged(-1.2, Weight.HARMLESS, sentence, almost)
+    assert said.why_not == "it is likelier to be what was heard freely, by 1.2 a word"
+    assert not judged(-1.6, Weight.CHANGING, sentence, almost).accepted
+    # The fewer words, the less can be told by them.
+    assert judged(-2.4, Weight.CHANGING, "have you moved it", "have you moved").accepted
+    assert not judged(-2.6, Weight.CHANGING, "have you moved it", "have you moved").accepted
+    assert judged(-3.4, Weight.CHANGING, "move it there", "move it they're").accepted
     # A word or two are too short to be sure of, and among many phrases each is unlikely by itself.
     assert judged(-8.0, Weight.HARMLESS, "yeah", "yeah").accepted
 
