@@ -62,7 +62,8 @@ def sound_card(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> SoundCard:
     runtime.mkdir(mode=0o700)
     monkeypatch.setenv("XDG_RUNTIME_DIR", str(runtime))
     monkeypatch.setenv("HOME", str(tmp_path))
-    for name in ("PULSE_SERVER", "PULSE_RUNTIME_PATH", "XDG_CONFIG_HOME"):
+    monkeypatch.setenv("PULSE_RUNTIME_PATH", str(runtime))
+    for name in ("PULSE_SERVER", "XDG_CONFIG_HOME"):
         monkeypatch.delenv(name, raising=False)
     os.environ.setdefault("DBUS_SESSION_BUS_ADDRESS", "disabled:")
     return SoundCard(tmp_path)
