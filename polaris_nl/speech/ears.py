@@ -47,12 +47,14 @@ class Ears:
         """Which of the world's words are listened for under other words, and which can't be heard."""
         return self.ways.alikes
 
-    def utterance(self, blocks: Iterable[bytes], weigh: Weigh, means: Means = str) -> Utterance:
+    def utterance(
+        self, blocks: Iterable[bytes], weigh: Weigh, means: Means | None = None
+    ) -> Utterance:
         """What a recording says as a whole."""
         found = list(pieces(blocks, self.activity, self.phrased, self.free))
         return utterance(found, weigh, self.ways, means)
 
-    def piece(self, audio: bytes, weigh: Weigh, means: Means = str) -> Utterance:
+    def piece(self, audio: bytes, weigh: Weigh, means: Means | None = None) -> Utterance:
         """What one piece of speech says, that was cut out before."""
         self.phrased.feed(audio)
         phrased, free = self.phrased.finish(), None

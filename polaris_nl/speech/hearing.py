@@ -79,7 +79,7 @@ class Ways:
 
 
 def utterance(
-    pieces: Sequence[Spoken], weigh: Weigh, ways: Ways = Ways(), means: Means = str
+    pieces: Sequence[Spoken], weigh: Weigh, ways: Ways = Ways(), means: Means | None = None
 ) -> Utterance:
     """What pieces of speech said together.
 
@@ -87,7 +87,8 @@ def utterance(
         pieces: in order; the pauses between them may be ends of sentences or hesitations.
         weigh: the strict test, and what a mistake would cost.
         ways: what helps to make sense of them.
-        means: what words would do, to know which readings differ in nothing that matters.
+        means: what words would do, to know which readings differ in nothing that matters; None where nobody
+            can be asked about what is doubtful.
     """
     chosen: list[str] = []
     repaired = ""
@@ -96,7 +97,7 @@ def utterance(
     for piece in pieces:
         readings = _sensible(chosen, piece, weigh, ways)
         found = min(readings, key=lambda f: f.cost, default=None)
-        if found is not None:
+        if found is not None and means is not None:
             doubtful = doubtful or _doubts(found, readings, piece, weigh, ways, means)
         repaired = repaired or (piece.alternatives[0] if found and found.repaired else "")
         heard = ways.alikes.put_back(piece.alternatives[0])[-1]

@@ -68,7 +68,12 @@ def test_an_utterance_is_left_alone_where_it_is_doubtful(
     gains: tuple[float, ...], free: str, accepted: bool
 ) -> None:
     piece = Spoken((CUP, TRAY), b"", free, gains)
-    said = utterance([piece], lambda text: Weight.CHANGING if text in (CUP, TRAY) else None)
+
+    def weigh(text: str) -> Weight | None:
+        return Weight.CHANGING if text in (CUP, TRAY) else None
+
+    assert utterance([piece], weigh).accepted, "nobody can be asked"
+    said = utterance([piece], weigh, means=str)
     assert said.text == CUP
     assert said.accepted is accepted
     assert said.doubts == (() if accepted else (CUP, TRAY))
@@ -94,5 +99,5 @@ def test_a_lost_not_is_asked_about_whatever_was_heard_freely() -> None:
     assert asked(Reading(opened, 13.0), Reading(shut, 10.6), free=opened) == (opened, shut)
     assert asked(Reading(opened, 13.0), Reading(shut, 9.9), free=opened) == ()
     piece = Spoken((opened, TRAY, shut), b"", opened, (13.0, 12.5, 10.6))
-    said = utterance([piece], lambda text: Weight.CHANGING)
+    said = utterance([piece], lambda text: Weight.CHANGING, means=str)
     assert said.doubts == (opened, shut)
