@@ -14,6 +14,7 @@ from polaris_nl.hands_free.weight import Sense
 from polaris_nl.language.interpretation import Refusal
 from polaris_nl.logs.reader import read_log
 from polaris_nl.model.errors import LogError, SpeechError
+from polaris_nl.model.text import listed
 from polaris_nl.session import Session
 from polaris_nl.snapshot import Answer, answer_json
 from polaris_nl.speech.audio import file_blocks
@@ -108,10 +109,12 @@ def take(said: Utterance, source: str, session: Session) -> tuple[Utterance, Ans
 def not_meant(session: Session, said: Utterance) -> Answer:
     """The answer to speech that isn't taken for the robot's."""
     answer = session.say("", source="speech")
-    refused = replace(
-        answer.interpretation, utterance=said.text, say=NOT_MEANT, refusal=Refusal(NOT_MEANT)
-    )
-    return replace(answer, interpretation=refused, say=NOT_MEANT)
+    say = NOT_MEANT
+    if said.doubts:
+        found = listed([f'"{text}"' for text in said.doubts], "or")
+        say = f"I may have misheard, so I left it alone. Say it again if it was {found}."
+    refused = replace(answer.interpretation, utterance=said.text, say=say, refusal=Refusal(say))
+    return replace(answer, interpretation=refused, say=say)
 
 
 def show(path: Path, said: Utterance, answer: Answer, session: Session, as_json: bool) -> None:

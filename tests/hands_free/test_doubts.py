@@ -137,3 +137,17 @@ def test_what_is_doubtful_is_understood_once_and_alike_where_it_does_the_same(
     assert sense.means("put the cup on the desk") != sense.means("put the tray on the desk")
     assert sense.means("where is the cup") != sense.means("where is the tray")
     assert len(asked) == len(set(asked)) == 5
+
+
+def test_a_recording_that_is_doubtful_changes_nothing_and_says_what_it_may_be(
+    session: Session,
+) -> None:
+    empty = session.snapshot.automaton
+    readings = ("put the cup on the desk", "put the tray on the desk")
+    said = Utterance(readings[0], False, why_not="another reading is as likely", doubts=readings)
+    _, answer = transcribed(said, "order.wav", session)
+    assert answer.say == (
+        "I may have misheard, so I left it alone."
+        ' Say it again if it was "put the cup on the desk" or "put the tray on the desk".'
+    )
+    assert session.snapshot.automaton == empty
