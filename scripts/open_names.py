@@ -19,7 +19,7 @@ from polaris_nl.model.world_file import load_world
 
 ROOT = Path(__file__).parent.parent
 REQUESTS = ROOT / "tests" / "language" / "requests"
-HEAD = """# How people say things, by those who had not seen the grammar; for the recogniser's phrases.
+HEAD = """# How things are asked for, by authors who had not seen the grammar; for the recogniser's phrases.
 # Made by scripts/open_names.py of tests/language/requests. {the object}: a name with its article, or a pronoun;
 # {object}: a name alone.
 """

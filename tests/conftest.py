@@ -35,9 +35,8 @@ _MODEL_CACHE = Path.home() / ".cache" / "vosk" / "vosk-model-small-en-us-0.15"
 def _own_home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     """Tests see an empty home, but the user's speech model."""
     home = tmp_path_factory.mktemp("home")
-    pulse = tmp_path_factory.mktemp(
-        "pulse"
-    )  # Whoever asks for microphones makes a folder in /tmp otherwise.
+    # Whoever asks for microphones makes a folder in /tmp otherwise.
+    pulse = tmp_path_factory.mktemp("pulse")
     changes = {
         "PULSE_RUNTIME_PATH": str(pulse),
         "HOME": str(home),

@@ -14,7 +14,7 @@ from typing import Literal as OneOf
 from polaris_nl.execution.events import Event, Said
 from polaris_nl.execution.events import Heard as HeardEvent
 from polaris_nl.execution.state import HumanCommand
-from polaris_nl.hands_free.choices import Choices, choices_among
+from polaris_nl.hands_free.choices import NO, YES, Choices, choices_among
 from polaris_nl.hands_free.phrases import spoken_names
 from polaris_nl.hands_free.running import Running, told
 from polaris_nl.model.text import capital
@@ -109,8 +109,8 @@ class Conversation:
         """
         if self._choices is not None:
             others = () if said.accepted else said.alternatives[:ANSWERS]
-            answers = map(self._choices.chosen, (said.text, *others))
-            chosen = next((answer for answer in answers if answer is not None), None)
+            answers = [self._answer(text) for text in (said.text, *others)]
+            chosen = next(filter(lambda c: c is not None, map(self._choices.chosen, answers)), None)
             if chosen is not None:
                 self._choices = None
                 self._failures = 0
@@ -118,6 +118,10 @@ class Conversation:
                     self._sink(heard)
                     return self._reply(said, "All right. Say it in other words.")
                 return self._act(said, chosen, heard)
+            if answers[0] == YES:
+                # It must not be taken for a yes to a run that was asked about before.
+                self._sink(heard)
+                return self._reply(said, self._choices.ask_again)
         if said.accepted:
             self._failures, self._choices = 0, None
             return self._act(said, said.text, heard)
@@ -127,6 +131,11 @@ class Conversation:
             self._sink(heard)
             return Reply(said)  # Not meant for the robot: it doesn't butt in.
         return self._failed(said, heard, near)
+
+    def _answer(self, text: str) -> str:
+        """Words as an answer to choices: any way to agree is a yes, any way not to a no."""
+        command = self.session.understood(text).command
+        return {"yes": YES, "no": NO}.get(command or "", text)
 
     def _was_meant(self, said: Utterance, called: bool) -> bool:
         """Whether speech that isn't understood was meant for the robot all the same, and wants an answer."""

@@ -198,7 +198,7 @@ class Referents:
         except (Unclear, Misfit):
             if self._holds_nothing(place, candidates):
                 raise Misfit(
-                    f'Nothing is kept in {place.text}; say where it is, or "and".'
+                    f'Things can\'t be in or on {place.text}; name a place, or join the two with "and".'
                 ) from None
             return list(candidates)
         state = self._world.initial

@@ -6,7 +6,7 @@ import pytest
 
 from polaris_nl.hands_free.choices import Choices, choice_phrases, choices_among
 
-CHOICES = Choices(("bring the cup", "bring the cap", "help"))
+CHOICES = Choices(("bring the cup", "bring the cap", "help"), "I didn't get that.")
 
 
 @pytest.mark.parametrize(
@@ -29,8 +29,8 @@ def test_answers(answer: str, chosen: str | None) -> None:
 
 def test_the_question_numbers_them() -> None:
     assert CHOICES.say == (
-        "I didn't get that. Did you mean one: bring the cup; two: bring the cap; three: help? Say the "
-        "number, or none."
+        "I didn't get that. Did you mean one: bring the cup; two: bring the cap; or three: help? Say "
+        "the number, or none."
     )
 
 
@@ -40,7 +40,7 @@ def test_a_number_that_isn_t_offered_is_no_answer() -> None:
 
 def test_choices_are_filled_up_without_repeating() -> None:
     found = choices_among(["help"], ["help", "read me the program", "a", "b"])
-    assert found == Choices(("help", "read me the program", "a"))
+    assert found == Choices(("help", "read me the program", "a"), "I didn't get that.")
     assert choices_among([], []) is None
 
 

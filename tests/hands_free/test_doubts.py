@@ -113,8 +113,8 @@ def test_of_two_readings_that_are_as_likely_the_user_chooses(session: Session) -
     heard = Heard(time=0.0, utterance=said.text, source="voice")
     reply = conversation.take(said, heard, called=False, near=lambda: [])
     assert reply.text == (
-        "I didn't get that. Did you mean one: put the cup on the desk; two: put the tray on the desk?"
-        " Say the number, or none."
+        "Did you mean one: put the cup on the desk; or two: put the tray on the desk? Say the number,"
+        " or none."
     )
     assert session.snapshot.automaton == empty
     assert take(conversation, "the second one", accepted=True).text.startswith("Bring the tray")
@@ -151,3 +151,35 @@ def test_a_recording_that_is_doubtful_changes_nothing_and_says_what_it_may_be(
         ' Say it again if it was "put the cup on the desk" or "put the tray on the desk".'
     )
     assert session.snapshot.automaton == empty
+
+
+@pytest.mark.parametrize("yes", ["yes", "sure", "yeah please"])
+def test_a_yes_to_several_readings_starts_no_run_that_was_asked_about_before(
+    session: Session, yes: str
+) -> None:
+    conversation = Conversation(session)
+    take(conversation, "go to the kitchen", accepted=True)
+    take(conversation, "run it", accepted=True)
+    assert session.awaits_yes
+    readings = ("put the cup on the desk", "put the tray on the desk")
+    said = Utterance(readings[0], False, why_not="another reading is as likely", doubts=readings)
+    heard = Heard(time=0.0, utterance=said.text, source="voice")
+    conversation.take(said, heard, called=False, near=lambda: [])
+    reply = take(conversation, yes, accepted=True)
+    assert not reply.starts
+    assert reply.text == (
+        "Which one? Did you mean one: put the cup on the desk; or two: put the tray on the desk? Say"
+        " the number, or none."
+    )
+    assert take(conversation, "two", accepted=True).text.startswith("Bring the tray")
+
+
+@pytest.mark.parametrize(
+    ("answer", "done"), [("sure", True), ("that's right", True), ("no not that", False)]
+)
+def test_any_way_to_agree_or_not_is_an_answer(session: Session, answer: str, done: bool) -> None:
+    conversation = Conversation(session)
+    empty = session.snapshot.automaton
+    take(conversation, MISHEARD, accepted=False)
+    take(conversation, answer, accepted=True)
+    assert (session.snapshot.automaton != empty) is done
