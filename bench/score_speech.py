@@ -25,9 +25,10 @@ from dataclasses import dataclass
 from functools import cache
 
 from bench.speech_audio import CONDITIONS, PARTS, Sentence, audio, foreign, sentences
-from bench.speech_decoding import Decodings, cut
+from bench.speech_decoding import Decodings, Opinions, cut
 from bench.speech_meaning import Remembered, is_meant
 from bench.speech_voices import VOICES, voices_of
+from polaris_nl.hands_free.phrases import spoken_names
 from polaris_nl.language.understanding import Understanding
 from polaris_nl.model.world_file import load_world
 from polaris_nl.speech.activity import SileroActivity
@@ -35,11 +36,12 @@ from polaris_nl.speech.hearing import Utterance, Ways, utterance
 from polaris_nl.speech.models import NARROW, WIDE, model_folder
 from polaris_nl.speech.recogniser import UNKNOWN, Spoken
 from polaris_nl.speech.repair import Repairer
+from polaris_nl.speech.second import heard_again
 from polaris_nl.speech.vosk_recogniser import ALTERNATIVES, VoskModel, VoskRecogniser
 
 WORLDS = ("care-home", "dinner-party")
 SEARCHES = {"wide": WIDE, "narrow": NARROW}
-SYSTEMS = ("free Vosk", "Vosk, phrases", "Polaris NL")
+SYSTEMS = ("free Vosk", "Vosk, phrases", "Polaris NL", "with Whisper")
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,6 +91,11 @@ def _decodings(world: str, search: str) -> Decodings:
 
 
 @cache
+def _opinions(world: str) -> Opinions:
+    return Opinions(spoken_names(_understanding(world)))
+
+
+@cache
 def _ways(world: str) -> Ways:
     words = {word for phrase in _understanding(world).phrases() for word in phrase.split()}
     return Ways(repairer=Repairer(words))
@@ -126,7 +133,12 @@ def _hear(system: str, task: Task, sounds: Sequence[bytes], context: Remembered)
     if system == SYSTEMS[1]:
         return _plain(task, task.world, sounds, context)
     pieces = _pieces(task.world, "wide", sounds, second=True)
-    return utterance(pieces, context.weigh, _ways(task.world), context.meaning)
+    ways = _ways(task.world)
+    first = utterance(pieces, context.weigh, ways, context.meaning)
+    if system == SYSTEMS[2] or first.sure or not pieces:
+        return first
+    opinions = [_opinions(task.world).opinion(piece.audio) for piece in pieces]
+    return heard_again(first, pieces, opinions, context.weigh, ways, context.meaning)
 
 
 def score(order: tuple[Task, tuple[str, ...]]) -> list[Score]:

@@ -5,12 +5,15 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Callable, Sequence
+from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 from bench.speech_audio import blocks
 from bench.speech_voices import FOLDER
 from polaris_nl.speech.activity import Activity, Cutter
 from polaris_nl.speech.recogniser import Decoded, Decoder
+from polaris_nl.speech.whisper_recogniser import BEAM, WhisperOpinion, WhisperRecogniser
 
 
 class Decodings:
@@ -40,6 +43,63 @@ class Decodings:
             with self._path.open("a", encoding="utf-8") as file:
                 file.write(json.dumps([name, found.texts, found.likelihoods]) + "\n")
         return self._known[name]
+
+
+class Opinions:
+    """A second recogniser that remembers what it has heard, on disk.
+
+    Args:
+        names: what it is told that things are called.
+    """
+
+    def __init__(self, names: Sequence[str]) -> None:
+        self._recogniser = WhisperRecogniser(names)
+        key = hashlib.sha256(repr(("whisper", BEAM, *names)).encode()).hexdigest()[:16]
+        self._path = FOLDER / "decodings" / f"{key}.jsonl"
+        self._path.parent.mkdir(parents=True, exist_ok=True)
+        self._known: dict[str, Any] = {}
+        if self._path.exists():
+            lines = self._path.read_text(encoding="utf-8").splitlines()
+            self._known.update(map(json.loads, lines))
+
+    def opinion(self, sound: bytes) -> RememberedOpinion:
+        """What a piece of speech may have been."""
+        return RememberedOpinion(self, sound)
+
+    def known(self, key: str, find: Callable[[], Any]) -> Any:
+        """What is remembered, or else found now."""
+        if key not in self._known:
+            found = self._known[key] = find()
+            with self._path.open("a", encoding="utf-8") as file:
+                file.write(json.dumps([key, found]) + "\n")
+        return self._known[key]
+
+    def fresh(self, sound: bytes) -> WhisperOpinion:
+        """What a piece of speech may have been, heard now."""
+        return self._recogniser.opinion(sound)
+
+
+class RememberedOpinion:
+    """A remembered opinion; the sound is heard again only for what isn't known yet."""
+
+    def __init__(self, opinions: Opinions, sound: bytes) -> None:
+        self._opinions = opinions
+        self._sound = sound
+        self._name = hashlib.sha256(sound).hexdigest()[:24]
+
+    @cached_property
+    def _fresh(self) -> WhisperOpinion:
+        return self._opinions.fresh(self._sound)
+
+    @cached_property
+    def texts(self) -> Sequence[str]:
+        """What it may have been."""
+        return tuple(self._opinions.known(self._name, lambda: list(self._fresh.texts)))
+
+    def likelihood(self, text: str) -> float:
+        """How likely any words are."""
+        key = f"{self._name} {text}"
+        return float(self._opinions.known(key, lambda: self._fresh.likelihood(text)))
 
 
 def cut(audio: bytes, activity: Activity) -> list[bytes]:

@@ -49,7 +49,7 @@ def run(arguments: Namespace) -> int:
     source = source_for(arguments.mic, arguments.allow_remote)
     if arguments.level:
         return _level(source, arguments.json)
-    maker, profile = EarMaker(), profile_of(arguments.robot)
+    maker, profile = EarMaker(arguments.second), profile_of(arguments.robot)
     if arguments.record and arguments.log is None:
         raise UsageError("--record keeps the sound in a log; name one with --log OUT.mcap.")
     with logged_session(arguments) as (session, log):

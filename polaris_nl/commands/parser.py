@@ -98,6 +98,10 @@ def _recogniser(parser: _Parser) -> None:
         "--recogniser", choices=("vosk", "whisper"), default="vosk",
         help="Vosk with the world's phrases (default), or Whisper tiny, which is slower",
     )  # fmt: skip
+    parser.add_argument(
+        "--second", action=argparse.BooleanOptionalAction,
+        help="hear again with Whisper what Vosk isn't sure of (default: if it is installed)",
+    )  # fmt: skip
 
 
 def _authoring(adder: _Adder) -> None:

@@ -29,7 +29,7 @@ NOT_MEANT = (
 def run(arguments: Namespace) -> int:
     """Transcribes each file, for itself or as one dialogue; 1 where one isn't understood or can't be read."""
     code = 0
-    maker = EarMaker()
+    maker = EarMaker(arguments.second)
     with session_of(arguments) as session:
         ears = (
             maker.free_ears() if arguments.free else ears_for(session, maker, arguments.recogniser)
@@ -81,10 +81,10 @@ def ears_for(session: Session, maker: EarMaker, recogniser: str = "vosk") -> Ear
     Raises:
         SpeechError: the recogniser's packages are missing.
     """
-    phrases = spoken_phrases(session.understanding)
+    phrases, names = spoken_phrases(session.understanding), spoken_names(session.understanding)
     if recogniser == "whisper":
-        return maker.whisper_ears(phrases)
-    return maker.ears(phrases, spoken_names(session.understanding))
+        return maker.whisper_ears(phrases, names)
+    return maker.ears(phrases, names)
 
 
 def hear_file(path: Path, ears: Ears, session: Session) -> tuple[Utterance, Answer]:

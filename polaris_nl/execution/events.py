@@ -44,6 +44,7 @@ class Heard(Event):
     Attributes:
         alternatives: what it may have been, the likeliest first.
         free: what a recogniser that expects nothing in particular heard.
+        again: what a second recogniser heard, where it was asked; or "".
         repaired: the likeliest words, where others were put in their place.
         decision: `accepted`, or why the words were left alone.
         audio: the attachment with the sound, where it was asked for.
@@ -59,6 +60,7 @@ class Heard(Event):
     audio_s: float = 0.0
     ms: float = 0.0
     free: str = ""
+    again: str = ""
     repaired: str = ""
     decision: str = "accepted"
     audio: str = ""

@@ -19,7 +19,7 @@ from polaris_nl.hands_free.phrases import SLEEP, WAKE
 from polaris_nl.hands_free.weight import Sense, weigher
 from polaris_nl.speech.ears import Ears
 from polaris_nl.speech.hearer import Heard, Hearer, Quick, Started
-from polaris_nl.speech.hearing import Utterance, near, utterance
+from polaris_nl.speech.hearing import Utterance, near
 from polaris_nl.speech.modes import Attention, Cue, Happening, State, cue
 from polaris_nl.speech.sources import Source
 from polaris_nl.speech.speaker import Speaker
@@ -181,7 +181,7 @@ class Listening:
             return
         started = time.perf_counter()
         sense = Sense(self.conversation.session)
-        said = utterance([spoken], sense.weigh, self.ears.ways, sense.means)
+        said = self.ears.said([spoken], sense.weigh, sense.means)
         if self._is_mode(said, heard):
             return
         event = self._event(said, heard, time.perf_counter() - started + heard.decoding_s)
@@ -226,6 +226,7 @@ class Listening:
             audio_s=round(said.audio_s, 2),
             ms=round(seconds * 1000, 1),
             free=said.free,
+            again=said.again,
             repaired=said.repaired,
             decision=said.why_not or "accepted",
             audio=self.keep(heard.spoken.audio) if self.keep is not None else "",

@@ -24,6 +24,9 @@ of readings, it is doubtful in any case."""
 SHORT = 2
 """Words of which the free decoding often gets none right; for them only other readings count."""
 MOST_ASKED = 3
+SURE_DIFFERENT, SURE_GAIN, SURE_MARGIN = 0.3, -0.5, 3.0
+"""What is no more different from what was heard freely, gains at least so much a word over it, and is likelier
+by so much than all that means something else, is sure."""
 
 Means = Callable[[str], object]
 """What words would do: two that do the same are equal."""
@@ -45,38 +48,66 @@ class Reading:
     rank: int = 0
 
 
-def doubts(
-    chosen: Reading,
-    others: Sequence[Reading],
-    free: str,
-    different: float,
-    weight: Weight | None,
-    means: Means,
-) -> tuple[str, ...]:
-    """The sentences of which one may have been meant, the chosen first; empty where it can be done.
+@dataclass(frozen=True, slots=True)
+class Case:
+    """A reading, and all that makes it certain or doubtful.
 
-    Args:
+    Attributes:
         chosen: the reading that most speaks for.
         others: further ones that make sense.
         free: what was heard freely.
         different: how far the chosen words are from that, from 0 to 1.
-        weight: what a mistake would cost; only what changes something is asked about.
+        weight: what a mistake would cost.
+    """
+
+    chosen: Reading
+    others: Sequence[Reading]
+    free: str
+    different: float
+    weight: Weight
+
+    def rivals(self, means: Means) -> list[Reading]:
+        """The others that mean something else."""
+        meant = means(self.chosen.text)
+        return [o for o in self.others if o.gain is not None and means(o.text) != meant]
+
+
+def doubts(case: Case, means: Means) -> tuple[str, ...]:
+    """The sentences of which one may have been meant, the chosen first; empty where it can be done.
+
+    Only what changes something is asked about.
+
+    Args:
+        case: the reading.
         means: what words would do.
     """
-    if weight is None or weight < Weight.CHANGING or chosen.gain is None or not free:
+    chosen = case.chosen
+    if case.weight < Weight.CHANGING or chosen.gain is None or not case.free:
         return ()
-    meant = means(chosen.text)
-    rivals = [
-        (other, opposite(other.text, chosen.text))
-        for other in others
-        if other.gain is not None and means(other.text) != meant
-    ]
+    rivals = [(other, opposite(other.text, chosen.text)) for other in case.rivals(means)]
     near = [o.text for o, flips in rivals if _is_near(chosen, o, OPPOSITE if flips else NARROW)]
-    if means(free) == meant:
+    if means(case.free) == means(chosen.text):
         near = [o.text for o, flips in rivals if flips and o.text in near]
-    elif not near and len(chosen.text.split()) > SHORT and _weak(chosen, different):
+    elif not near and len(chosen.text.split()) > SHORT and _weak(chosen, case.different):
         return (chosen.text,)
     return tuple(dict.fromkeys((chosen.text, *near)))[:MOST_ASKED] if near else ()
+
+
+def is_sure(case: Case, means: Means) -> bool:
+    """Whether both decodings bear a reading out, so that it needn't be heard again.
+
+    Args:
+        case: the reading.
+        means: what words would do.
+    """
+    chosen = case.chosen
+    if case.weight is Weight.ASKING or chosen.gain is None:
+        return False
+    if means(case.free) == means(chosen.text):
+        return True
+    if case.different > SURE_DIFFERENT or chosen.gain < SURE_GAIN * len(chosen.text.split()):
+        return False
+    return not any(_is_near(chosen, rival, SURE_MARGIN) for rival in case.rivals(means))
 
 
 def opposite(one: str, other: str) -> bool:

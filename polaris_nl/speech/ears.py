@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
@@ -10,10 +11,12 @@ from polaris_nl.speech.doubt import Means
 from polaris_nl.speech.hearing import Utterance, Ways, utterance
 from polaris_nl.speech.lexicon import SoundAlikes, sound_alikes
 from polaris_nl.speech.models import NARROW, model_folder
-from polaris_nl.speech.recogniser import Decoder, Spoken, pieces
+from polaris_nl.speech.recogniser import Decoder, SecondRecogniser, Spoken, pieces
 from polaris_nl.speech.repair import Repairer
+from polaris_nl.speech.second import heard_again
 from polaris_nl.speech.vosk_recogniser import VoskModel, VoskRecogniser
 from polaris_nl.speech.weight import Weigh
+from polaris_nl.speech.whisper_recogniser import WhisperRecogniser, is_installed
 
 _ORDINARY = (
     "the a and to you i it is that was he she we they of in on for with at by so not what have are do this "
@@ -34,6 +37,7 @@ class Ears:
         quick: hears little but the words that act at once.
         activity: where speech is.
         ways: what helps to make sense of what was heard.
+        second: hears again what isn't sure, or None.
     """
 
     phrased: Decoder
@@ -41,6 +45,7 @@ class Ears:
     quick: Decoder
     activity: Activity
     ways: Ways
+    second: SecondRecogniser | None = None
 
     @property
     def alikes(self) -> SoundAlikes:
@@ -51,8 +56,7 @@ class Ears:
         self, blocks: Iterable[bytes], weigh: Weigh, means: Means | None = None
     ) -> Utterance:
         """What a recording says as a whole."""
-        found = list(pieces(blocks, self.activity, self.phrased, self.free))
-        return utterance(found, weigh, self.ways, means)
+        return self.said(list(pieces(blocks, self.activity, self.phrased, self.free)), weigh, means)
 
     def piece(self, audio: bytes, weigh: Weigh, means: Means | None = None) -> Utterance:
         """What one piece of speech says, that was cut out before."""
@@ -62,17 +66,32 @@ class Ears:
             self.free.feed(audio)
             free = self.free.finish()
         found = [Spoken.of(phrased, free, audio)] if phrased.texts else []
-        return utterance(found, weigh, self.ways, means)
+        return self.said(found, weigh, means)
+
+    def said(self, pieces: Sequence[Spoken], weigh: Weigh, means: Means | None = None) -> Utterance:
+        """What pieces of speech say together; what isn't sure is heard again, where that is possible."""
+        first = utterance(pieces, weigh, self.ways, means)
+        if self.second is None or means is None or first.sure or not pieces:
+            return first
+        opinions = [self.second.opinion(piece.audio) for piece in pieces]
+        return heard_again(first, pieces, opinions, weigh, self.ways, means)
 
 
 class EarMaker:
     """Makes ears, each time the world changes: the models are loaded once.
 
+    Args:
+        second: whether a second recogniser hears again what isn't sure; None: if it is installed.
+
     Raises:
         SpeechError: a package or the model is missing.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, second: bool | None = None) -> None:
+        self._second = is_installed() if second is None else second
+        if self._second:
+            # It takes half a second; nothing waits for it until something isn't sure.
+            threading.Thread(target=WhisperRecogniser().load, name="loading", daemon=True).start()
         folder = model_folder()
         self._activity: Callable[[], Activity] = SileroActivity
         self._wide = VoskModel(folder)
@@ -87,6 +106,7 @@ class EarMaker:
                 others; other phrases with such words are left out, there are more ways to say the same.
         """
         vocabulary = {word for phrase in phrases for word in phrase.split()}
+        names = list(names)
         named = {word for name in names for word in name.split()}
         owned = {word for word in vocabulary if word.endswith("'s")}
         bridged = sound_alikes(named | owned, self._wide.knows)
@@ -96,20 +116,26 @@ class EarMaker:
         free = VoskRecogniser(self._narrow)
         ways = Ways(alikes, Repairer(vocabulary))
         quick = VoskRecogniser(self._narrow, QUICK_PHRASES, alternatives=1)
-        return Ears(phrased.decoder(), free.decoder(), quick.decoder(), self._activity(), ways)
+        second = WhisperRecogniser(names) if self._second else None
+        return Ears(
+            phrased.decoder(), free.decoder(), quick.decoder(), self._activity(), ways, second
+        )  # fmt: skip
 
-    def whisper_ears(self, phrases: Sequence[str]) -> Ears:
+    def whisper_ears(self, phrases: Sequence[str], names: Iterable[str] = ()) -> Ears:
         """Ears of the second recogniser: it knows no phrases, so what it hears is mended toward them.
+
+        Args:
+            phrases: what may be said.
+            names: what things are called.
 
         Raises:
             SpeechError: its packages are missing.
         """
-        from polaris_nl.speech.whisper_recogniser import WhisperRecogniser
-
         vocabulary = {word for phrase in phrases for word in phrase.split()}
         quick = VoskRecogniser(self._narrow, QUICK_PHRASES, alternatives=1)
         ways = Ways(repairer=Repairer(vocabulary))
-        return Ears(WhisperRecogniser().decoder(), None, quick.decoder(), self._activity(), ways)
+        whisper = WhisperRecogniser(names)
+        return Ears(whisper.decoder(), None, quick.decoder(), self._activity(), ways)
 
     def free_ears(self) -> Ears:
         """Ears that expect nothing in particular."""

@@ -12,21 +12,20 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 from polaris_nl.speech.agreement import BREAK, difference, disagreement
-from polaris_nl.speech.doubt import Means, Reading, doubts, opposite
+from polaris_nl.speech.doubt import Case, Means, Reading, doubts, is_sure, opposite
 from polaris_nl.speech.lexicon import SoundAlikes
+from polaris_nl.speech.readings import ASKING_COST, Found, gain_of, placed, readings
 from polaris_nl.speech.recogniser import UNKNOWN, Spoken
 from polaris_nl.speech.repair import MOST_TRIED, Repairer, apart
 from polaris_nl.speech.weight import Weigh, Weight
 
-UNHEARD = 8.0
-"""By how much less a reading gains that none of the alternatives is."""
 NEAR = 0.2
 """How far from the likeliest reading the free decoding may be to be one itself, where others make sense."""
 LOOKED_AT, TRIED = 4, 16
 """Readings that make sense, and readings of all, after which no more are looked at."""
-RANK_COST, ASKING_COST, FREE_COST = 0.02, 0.3, 0.015
-"""What speaks against a reading besides its difference: each place in the list, that it makes sense only in
-part, and that nothing but the free decoding has it."""
+RANK_COST, FREE_COST = 0.02, 0.015
+"""What speaks against a reading besides its difference: each place in the list, and that nothing but the
+free decoding has it."""
 MOST_REPAIRED = 0.3
 """How different a repaired sentence may sound from what was heard freely."""
 
@@ -47,6 +46,8 @@ class Utterance:
         repaired: the words before they were mended, or "".
         why_not: why it isn't accepted, for the log; or "".
         doubts: sentences to be asked about, of which one seems to have been said; or empty.
+        sure: whether so much speaks for the words that they needn't be heard again.
+        again: what a second recogniser heard, where it was asked; or "".
     """
 
     text: str
@@ -59,6 +60,8 @@ class Utterance:
     repaired: str = ""
     why_not: str = ""
     doubts: tuple[str, ...] = ()
+    sure: bool = False
+    again: str = ""
 
 
 @dataclass(frozen=True)
@@ -90,18 +93,23 @@ def utterance(
         means: what words would do, to know which readings differ in nothing that matters; None where nobody
             can be asked about what is doubtful.
     """
-    chosen: list[str] = []
+    chosen: Sequence[str] = []
     repaired = ""
     gains: list[float | None] = []
     doubtful: tuple[str, ...] = ()
+    sure = means is not None
     for piece in pieces:
-        readings = _sensible(chosen, piece, weigh, ways)
-        found = min(readings, key=lambda f: f.cost, default=None)
+        sensible = _sensible(chosen, piece, weigh, ways)
+        found = min(sensible, key=lambda f: f.cost, default=None)
         if found is not None and means is not None:
-            doubtful = doubtful or _doubts(found, readings, piece, weigh, ways, means)
+            case = _case(found, sensible, piece, ways, weigh)
+            doubtful = doubtful or doubts(case, means)
+            # That it was heard freely is no second witness for what was heard only freely.
+            contested = found.repaired and bool(case.rivals(means))
+            sure = sure and not contested and is_sure(case, means)
         repaired = repaired or (piece.alternatives[0] if found and found.repaired else "")
         heard = ways.alikes.put_back(piece.alternatives[0])[-1]
-        gains.append(_gain(piece, found.reading if found else heard, ways.alikes))
+        gains.append(gain_of(piece, found.reading if found else heard, ways.alikes))
         chosen = found.pieces if found else [*chosen, heard]
     text = BREAK.join(chosen)
     free = " ".join(piece.free for piece in pieces if piece.free)
@@ -124,100 +132,65 @@ def utterance(
         repaired=repaired,
         why_not=why_not,
         doubts=doubtful,
+        sure=sure and not why_not,
     )
 
 
-def _doubts(
-    found: _Found,
-    readings: Sequence[_Found],
-    piece: Spoken,
-    weigh: Weigh,
-    ways: Ways,
-    means: Means,
-) -> tuple[str, ...]:
-    """What would have to be asked about a piece."""
+def _case(found: Found, sensible: Sequence[Found], piece: Spoken, ways: Ways, weigh: Weigh) -> Case:
+    """A reading of a piece, and all that makes it certain or doubtful."""
     chosen, *others = (
-        Reading(BREAK.join(f.pieces), _gain(piece, f.reading, ways.alikes), f.rank)
-        for f in (found, *readings, *_opposites(found, piece, ways))
-        if f is found or weigh(BREAK.join(f.pieces)) not in (None, Weight.ASKING)
+        Reading(f.text, gain_of(piece, f.reading, ways.alikes), f.rank)
+        for f in (found, *sensible, *_opposites(found, piece, ways, weigh))
+        if f is found or f.weight is not Weight.ASKING
     )
     apart_by = difference(found.reading, piece.free)
-    return doubts(chosen, others, piece.free, apart_by, weigh(chosen.text), means)
+    return Case(chosen, others, piece.free, apart_by, found.weight)
 
 
-def _opposites(found: _Found, piece: Spoken, ways: Ways) -> Iterator[_Found]:
+def _opposites(found: Found, piece: Spoken, ways: Ways, weigh: Weigh) -> Iterator[Found]:
     """The readings that differ from the one found by a "not", however few were looked at."""
-    for reading in _readings(piece, ways.alikes):
+    for reading in readings(piece, ways.alikes):
         if opposite(reading, found.reading):
             last = found.pieces[-1].removesuffix(found.reading) + reading
-            yield replace(found, pieces=[*found.pieces[:-1], last], reading=reading)
+            pieces = [*found.pieces[:-1], last]
+            weight = weigh(BREAK.join(pieces))
+            if weight is not None:
+                yield replace(found, pieces=pieces, reading=reading, weight=weight)
 
 
-def _gain(piece: Spoken, reading: str, alikes: SoundAlikes) -> float | None:
-    """By how much a reading explains a piece better than what was heard freely; None if unknown."""
-    if not piece.gains:
-        return None
-    for text, gain in zip(piece.alternatives, piece.gains, strict=True):
-        if reading in alikes.put_back(text):
-            return gain
-    return piece.gains[0] - UNHEARD
-
-
-@dataclass(frozen=True, slots=True)
-class _Found:
-    """The pieces so far with a reading of the next one."""
-
-    pieces: list[str]
-    cost: float
-    reading: str
-    repaired: bool = False
-    rank: int = 0
-
-
-def _sensible(chosen: list[str], piece: Spoken, weigh: Weigh, ways: Ways) -> list[_Found]:
+def _sensible(chosen: Sequence[str], piece: Spoken, weigh: Weigh, ways: Ways) -> list[Found]:
     """Readings that make sense, as many as are looked at."""
-    found: list[_Found] = []
-    for rank, reading in enumerate(itertools.islice(_readings(piece, ways.alikes), TRIED)):
-        placed = _placed(chosen, reading, piece.free, RANK_COST * rank, weigh)
-        found += (replace(one, rank=rank) for one in placed)
+    found: list[Found] = []
+    for rank, reading in enumerate(itertools.islice(readings(piece, ways.alikes), TRIED)):
+        if one := placed(chosen, reading, piece.free, RANK_COST * rank, weigh):
+            found.append(replace(one, rank=rank))
         whole = bool(found) and found[-1].pieces[-1] == piece.free and found[-1].cost < ASKING_COST
         if len(found) >= LOOKED_AT or whole:
             break
     if not found:
-        rest = itertools.islice(_readings(piece, ways.alikes), TRIED, None)
+        rest = itertools.islice(readings(piece, ways.alikes), TRIED, None)
         for reading in rest:
-            if placed := _placed(chosen, reading, piece.free, 0.0, weigh):
-                found = [replace(one, rank=TRIED) for one in placed]
+            if one := placed(chosen, reading, piece.free, 0.0, weigh):
+                found = [replace(one, rank=TRIED)]
                 break
     heard_so = piece.free and difference(piece.alternatives[0], piece.free) <= NEAR
-    if piece.free and ways.repairer is not None and (heard_so or not found):
-        for one in _placed(chosen, piece.free, piece.free, FREE_COST, weigh):
-            found.append(replace(one, repaired=True))
+    wanted = piece.free and ways.repairer is not None and (heard_so or not found)
+    if wanted and (one := placed(chosen, piece.free, piece.free, FREE_COST, weigh)):
+        found.append(replace(one, repaired=True))
     if not found and ways.repairer is not None:
         mended = _repaired(chosen, piece, weigh, ways.repairer)
         return [mended] if mended is not None else []
     return found
 
 
-def _placed(chosen: list[str], reading: str, free: str, cost: float, weigh: Weigh) -> list[_Found]:
-    """A reading as a new sentence, or as more of the last; empty where it makes no sense."""
-    ways_on = [[*chosen, reading]]
-    if chosen:
-        ways_on.append([*chosen[:-1], f"{chosen[-1]} {reading}"])
-    for pieces in ways_on:
-        weight = weigh(BREAK.join(pieces))
-        if weight is not None:
-            asking = ASKING_COST if weight is Weight.ASKING else 0.0
-            return [_Found(pieces, cost + asking + difference(reading, free), reading)]
-    return []
-
-
-def _repaired(chosen: list[str], piece: Spoken, weigh: Weigh, repairer: Repairer) -> _Found | None:
+def _repaired(
+    chosen: Sequence[str], piece: Spoken, weigh: Weigh, repairer: Repairer
+) -> Found | None:
     """The nearest repair that makes sense as a whole: nobody is asked about words that nobody said."""
     for text in _repairs(piece, repairer):
-        for found in _placed(chosen, text, "", 0.0, weigh):
-            if found.cost < ASKING_COST:
-                return replace(found, repaired=True)
+        found = placed(chosen, text, "", 0.0, weigh)
+        if found is not None and found.weight is not Weight.ASKING:
+            return replace(found, repaired=True)
     return None
 
 
@@ -226,21 +199,12 @@ def near(pieces: Sequence[Spoken], weigh: Weigh, ways: Ways = Ways(), most: int 
     found: dict[str, None] = {}
     for piece in pieces:
         repairs = _repairs(piece, ways.repairer) if ways.repairer is not None else iter(())
-        for text in itertools.chain(_readings(piece, ways.alikes), repairs):
+        for text in itertools.chain(readings(piece, ways.alikes), repairs):
             if weigh(text) is not None:
                 found[text] = None
             if len(found) == most:
                 return list(found)
     return list(found)
-
-
-def _readings(piece: Spoken, alikes: SoundAlikes) -> Iterator[str]:
-    seen = set()
-    for text in piece.alternatives:
-        for reading in alikes.put_back(text):
-            if UNKNOWN not in reading and reading not in seen:
-                seen.add(reading)
-                yield reading
 
 
 def _repairs(piece: Spoken, repairer: Repairer) -> Iterator[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -79,6 +79,27 @@ class Recogniser(Protocol):
 
     def decoder(self) -> Decoder:
         """A decoder for one stream of sound."""
+        ...
+
+
+class Opinion(Protocol):
+    """What a second recogniser makes of one piece of speech, heard whole."""
+
+    @property
+    def texts(self) -> Sequence[str]:
+        """What it may have been, the likeliest first; lower case, no punctuation."""
+        ...
+
+    def likelihood(self, text: str) -> float:
+        """The natural logarithm of the likelihood of any words, given the sound."""
+        ...
+
+
+class SecondRecogniser(Protocol):
+    """Hears again what the first recogniser isn't sure of."""
+
+    def opinion(self, sound: bytes) -> Opinion:
+        """What a piece of speech may have been; 16 kHz mono 16-bit samples."""
         ...
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from polaris_nl.speech.doubt import Reading, doubts, opposite
+from polaris_nl.speech.doubt import Case, Reading, doubts, is_sure, opposite
 from polaris_nl.speech.hearing import utterance
 from polaris_nl.speech.recogniser import Spoken
 from polaris_nl.speech.weight import Weight
@@ -20,7 +20,11 @@ def asked(
     different: float = 0.1,
     weight: Weight = Weight.CHANGING,
 ) -> tuple[str, ...]:
-    return doubts(chosen, others, free, different, weight, lambda text: text.replace("then ", ""))
+    return doubts(Case(chosen, others, free, different, weight), means)
+
+
+def means(text: str) -> str:
+    return text.replace("then ", "")
 
 
 def test_another_reading_that_is_as_likely_is_asked_about_too() -> None:
@@ -101,3 +105,20 @@ def test_a_lost_not_is_asked_about_whatever_was_heard_freely() -> None:
     piece = Spoken((opened, TRAY, shut), b"", opened, (13.0, 12.5, 10.6))
     said = utterance([piece], lambda text: Weight.CHANGING, means=str)
     assert said.doubts == (opened, shut)
+
+
+@pytest.mark.parametrize(
+    ("case", "sure"),
+    [
+        (Case(Reading(CUP, 1.0), [Reading(TRAY, 0.9)], f"then {CUP}", 0.1, Weight.CHANGING), True),
+        (Case(Reading(CUP, 1.0), [Reading(TRAY, -3.0)], NOISE, 0.3, Weight.CHANGING), True),
+        (Case(Reading(CUP, 1.0), [Reading(TRAY, -1.0)], NOISE, 0.3, Weight.CHANGING), False),
+        (Case(Reading(CUP, 1.0), [], NOISE, 0.4, Weight.CHANGING), False),
+        (Case(Reading(CUP, -4.0), [], NOISE, 0.1, Weight.CHANGING), False),
+        (Case(Reading(CUP, None), [], CUP, 0.0, Weight.CHANGING), False),
+        (Case(Reading(CUP, 1.0), [], CUP, 0.0, Weight.ASKING), False),
+    ],
+    ids=["both mean it", "likelier", "narrowly", "far", "unlikely", "unknown", "in part"],
+)
+def test_what_both_decodings_bear_out_is_sure(case: Case, sure: bool) -> None:
+    assert is_sure(case, means) is sure

@@ -1,0 +1,180 @@
+"""What the first recogniser isn't sure of is heard again by a second one, and both decide together.
+
+Two recognisers of different kinds go astray at different words, in noise above all. So each reading of
+either is rated by both: by how likely the second finds it, given the sound, and by how much better the
+first explains the sound with it than with any words. (Combining recognisers: J. G. Fiscus, "A
+post-processing system to yield reduced word error rates", ASRU 1997, there by votes on words.)
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+from polaris_nl.speech.agreement import BREAK, difference
+from polaris_nl.speech.doubt import MOST_ASKED, Means
+from polaris_nl.speech.hearing import Utterance, Ways
+from polaris_nl.speech.readings import Found, gain_of, placed, readings
+from polaris_nl.speech.recogniser import Opinion, Spoken
+from polaris_nl.speech.weight import Weigh, Weight
+
+FIRST = 0.5
+"""What the first recogniser's likelihood counts beside that of the second."""
+RATED, ALIKE = 12, 2
+"""Readings that are rated, and how many of them may mean the same: each takes a fiftieth of a second."""
+PARTLY = 6.0
+"""By how much less likely a reading is held that makes sense only in part."""
+LEAST, MARGIN = -1.0, 1.0
+"""The least by which a reading may be likelier than the second recogniser's own words, a word, and than what
+means something else, to be done (differences of log-likelihoods)."""
+WEAK = 2.0
+"""What falls short of the least by this factor is left alone."""
+MOVING = -0.3
+"""The least for what moves the robot."""
+SHORT, SHORT_LEAST, SHORT_MARGIN = 2, -0.1, 4.0
+"""The same for so few words: the second recogniser needs more of them than the first."""
+UNHEARD_LEAST, UNHEARD_SHORT = -0.5, 3
+"""The least for words that only the second recogniser heard, and of how many there must be more."""
+
+_NOT = re.compile(r"n't\b|\b(?:not|never|unless)\b")
+
+
+@dataclass(frozen=True, slots=True)
+class _Rated:
+    """A reading of one piece, rated by both recognisers.
+
+    Attributes:
+        found: the reading in its place.
+        heard: whether the first recogniser heard it, too.
+        score: how likely both find it.
+        surplus: how much likelier the second finds it than its own words, a word.
+        means: what it would do.
+    """
+
+    found: Found
+    heard: bool
+    score: float
+    surplus: float
+    means: object
+
+    @property
+    def sensible(self) -> bool:
+        """Whether it makes sense as a whole."""
+        return self.found.weight is not Weight.ASKING
+
+
+def heard_again(
+    first: Utterance,
+    pieces: Sequence[Spoken],
+    opinions: Sequence[Opinion],
+    weigh: Weigh,
+    ways: Ways,
+    means: Means,
+) -> Utterance:
+    """What was said, as two recognisers heard it.
+
+    Args:
+        first: what it is by the first recogniser alone.
+        pieces: what that heard, in order.
+        opinions: what the second one heard of each.
+        weigh: the strict test, and what a mistake would cost.
+        ways: what helps to make sense of the words.
+        means: what words would do.
+    """
+    again = BREAK.join(o.texts[0] for o in opinions if o.texts)
+    first = replace(first, again=again)
+    chosen: Sequence[str] = []
+    doubtful: tuple[str, ...] = ()
+    for piece, opinion in zip(pieces, opinions, strict=True):
+        rated = _rated(chosen, piece, opinion, weigh, ways, means)
+        best = max(rated, key=lambda r: r.score, default=None)
+        if best is None or not best.sensible:
+            return first
+        rivals = [r for r in rated if r.sensible and r.means != best.means]
+        margin = best.score - max((r.score for r in rivals), default=-1e9)
+        if len(best.found.text.split()) <= SHORT:
+            if not _is_certain_short(best, margin):
+                return first
+        elif best.surplus < LEAST * WEAK:
+            return first if first.doubts else _left_alone(first, best)
+        elif not _is_certain(best, margin, opinion):
+            if not (first.accepted or first.doubts or best.surplus >= LEAST):
+                return first  # Nobody is asked about what may well be other people's talk.
+            near = [r.found.text for r in rivals if best.score - r.score < MARGIN]
+            doubtful = doubtful or (best.found.text, *near)
+        chosen = best.found.pieces
+    text = BREAK.join(chosen)
+    doubtful = tuple(dict.fromkeys(doubtful))[:MOST_ASKED]
+    return replace(
+        first,
+        text=text,
+        accepted=not doubtful,
+        different=difference(text, first.free),
+        repaired="" if text == first.text else first.text,
+        why_not="two recognisers don't agree" if doubtful else "",
+        doubts=doubtful,
+    )
+
+
+def _left_alone(first: Utterance, best: _Rated) -> Utterance:
+    why = f"heard again, it is likelier to be other words, by {-best.surplus:.1f} a word"
+    return replace(first, accepted=False, why_not=first.why_not or why)
+
+
+def _is_certain(best: _Rated, margin: float, opinion: Opinion) -> bool:
+    least = MOVING if best.found.weight is Weight.MOVING else LEAST
+    reading = best.found.reading
+    if best.found.weight is Weight.HARMLESS:
+        return best.surplus >= least
+    if not best.heard:
+        least = max(least, UNHEARD_LEAST)
+        if len(reading.split()) <= UNHEARD_SHORT:
+            return False
+    # A "not" is easily lost, and nothing is more wrong.
+    agrees = len(_NOT.findall(reading)) == len(_NOT.findall(opinion.texts[0]))
+    return best.surplus >= (least if agrees else 0.0) and margin >= MARGIN
+
+
+def _is_certain_short(best: _Rated, margin: float) -> bool:
+    return best.heard and best.surplus >= SHORT_LEAST and margin >= SHORT_MARGIN
+
+
+def _rated(
+    chosen: Sequence[str], piece: Spoken, opinion: Opinion, weigh: Weigh, ways: Ways, means: Means
+) -> list[_Rated]:
+    """The readings of either recogniser that make sense, rated by both."""
+    if not opinion.texts:
+        return []
+    own = opinion.likelihood(opinion.texts[0])
+    lowest = min(piece.gains, default=0.0)
+    known = set(readings(piece, ways.alikes))
+    found = []
+    for one, meant in _candidates(chosen, piece, opinion, weigh, ways, means):
+        likelihood = opinion.likelihood(one.reading)
+        heard = one.reading in known
+        gain = gain_of(piece, one.reading, ways.alikes) if heard else lowest
+        score = likelihood + FIRST * (gain or 0.0) - (PARTLY if one.weight is Weight.ASKING else 0)
+        surplus = (likelihood - own) / len(one.reading.split())
+        found.append(_Rated(one, heard, score, surplus, meant))
+    return found
+
+
+def _candidates(
+    chosen: Sequence[str], piece: Spoken, opinion: Opinion, weigh: Weigh, ways: Ways, means: Means
+) -> Iterator[tuple[Found, object]]:
+    """The readings that are worth being rated: not too many, and few that mean the same."""
+    alike: dict[object, int] = {}
+    texts = dict.fromkeys((*opinion.texts, *readings(piece, ways.alikes), piece.free))
+    rated = 0
+    for text in filter(None, texts):
+        one = placed(chosen, text, piece.free, 0.0, weigh)
+        if one is None:
+            continue
+        meant = means(one.text)
+        alike[meant] = alike.get(meant, 0) + 1
+        if alike[meant] <= ALIKE:
+            yield one, meant
+            rated += 1
+        if rated >= RATED:
+            return
