@@ -35,7 +35,7 @@ bench: $(STAMP) models ## the speed table, beside the plain way
 score-language: $(STAMP) ## how much of what people say is understood, where the corpora are there
 	@$(BIN)/python -m bench.score_language
 
-score-speech: $(STAMP) models $(VOICES)/.installed ## how well speech is understood, on a set that synthetic voices speak here
+score-speech: $(ROBOT) models $(VOICES)/.installed ## how well speech is understood, on a set that synthetic voices speak here
 	@scripts/install-system voices
 	@PYTHONPATH=. $(VOICES)/bin/python scripts/make_speech_set.py
 	@$(BIN)/python -m bench.score_speech

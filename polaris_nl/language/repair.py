@@ -8,6 +8,7 @@ stand are not.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator, Mapping, Sequence
 
 from polaris_nl.language.common import Common
@@ -17,6 +18,11 @@ from polaris_nl.language.verbs import Verbs
 
 BACK = 10
 """Words that a repair can take back at most."""
+_NO = "no"
+_MORE = frozenset(("too", "also", "well", "then", "and"))
+"""Words of what comes on top, and in the place of nothing."""
+_WAITS = frozenset(("if", "when", "once", "unless", "until", "till", "says", "said", "say"))
+"""Words before a "no" that somebody else may say: "if she says no tell the nurse"."""
 _TAKEN_UP = ("it", "them", "one", "him", "her")
 LONG = 25
 """Words beyond which fewer candidates are tried: each costs as much as a reading."""
@@ -53,7 +59,9 @@ class Repairs:
         self, tokens: Sequence[str], mentions: Sequence[Sequence[Mention]]
     ) -> Iterator[list[str]]:
         """What remains where somebody says that they meant something else: "the desk, sorry, the table"."""
-        corrected = self._corrected(tokens, mentions, self._markers)
+        corrected = itertools.chain(
+            self._corrected(tokens, mentions, self._markers), self._begun_again(tokens, mentions)
+        )
         yield from _different(tokens, (w for c in corrected for w in (c, _without_commas(c))))
 
     def without_fillers(self, tokens: Sequence[str]) -> list[str]:
@@ -167,6 +175,22 @@ class Repairs:
                     yield from self._replaced(before, rest, len(tokens) - len(rest), mentions)
                     yield [*before[: self._clause_start(before)], *rest]
             at += size or 1
+
+    def _begun_again(
+        self, tokens: Sequence[str], mentions: Sequence[Sequence[Mention]]
+    ) -> Iterator[list[str]]:
+        """The same verb after a "no" says the clause again: "open the fridge no open the drawer"."""
+        for at in range(1, len(tokens) - 1):
+            before, rest = list(tokens[:at]), list(tokens[at + 1 :])
+            if tokens[at] != _NO or _MORE & set(rest) or BREAK in tokens:
+                continue
+            starts = (i for i in range(len(before)) if not i or before[i - 1] in self._starts)
+            start = max((i for i in starts if before[i] == rest[0]), default=None)
+            if start is not None and not _WAITS & set(before[start:]):
+                if any(m.end == len(tokens) for there in mentions[at + 2 : at + 3] for m in there):
+                    # Nothing but somebody else is named: "tell Ann that ..., no, tell Bob".
+                    yield from self._replaced(before, rest[1:], at + 2, mentions)
+                yield [*before[:start], *rest]
 
     def _said_again(self, before: list[str], rest: list[str]) -> Iterator[list[str]]:
         """A repair starts with the word at which what it repairs started: "the red no the blue cup"."""

@@ -11,6 +11,7 @@ from polaris_nl.model.errors import SpeechError
 RATE = 16_000
 """Samples a second that the recogniser takes."""
 BLOCK = RATE // 10
+_FRAME = RATE // 50
 """Samples a block: 100 ms."""
 INSTALL = 'Install the voice packages with: pip install "polaris-nl[voice]"'
 
@@ -108,6 +109,19 @@ def level(block: bytes) -> float:
     samples = numpy.frombuffer(block, dtype="<i2").astype("float64")
     power = float(numpy.mean(samples**2)) if len(samples) else 0.0
     return 10 * float(numpy.log10(max(power, 1.0) / 32768.0**2))
+
+
+def contrast(sound: bytes) -> float:
+    """How far speech stands out of what is heard between its words, in decibels: 40 in a quiet room."""
+    import numpy
+
+    samples = numpy.frombuffer(sound, dtype="<i2").astype("float64")
+    frames = samples[: len(samples) // _FRAME * _FRAME].reshape(-1, _FRAME)
+    if not len(frames):
+        return 0.0
+    loudness = 10 * numpy.log10(numpy.maximum((frames**2).mean(axis=1), 1.0))
+    quiet, loud = numpy.percentile(loudness, (10, 90))
+    return float(loud - quiet)
 
 
 def _int16(samples: Any) -> bytes:

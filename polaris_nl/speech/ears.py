@@ -13,7 +13,7 @@ from polaris_nl.speech.lexicon import SoundAlikes, sound_alikes
 from polaris_nl.speech.models import NARROW, model_folder
 from polaris_nl.speech.recogniser import Decoder, SecondRecogniser, Spoken, pieces
 from polaris_nl.speech.repair import Repairer
-from polaris_nl.speech.second import heard_again
+from polaris_nl.speech.second import heard_again, wants_second
 from polaris_nl.speech.vosk_recogniser import VoskModel, VoskRecogniser
 from polaris_nl.speech.weight import Weigh
 from polaris_nl.speech.whisper_recogniser import WhisperRecogniser, is_installed
@@ -71,7 +71,7 @@ class Ears:
     def said(self, pieces: Sequence[Spoken], weigh: Weigh, means: Means | None = None) -> Utterance:
         """What pieces of speech say together; what isn't sure is heard again, where that is possible."""
         first = utterance(pieces, weigh, self.ways, means)
-        if self.second is None or means is None or first.sure or not pieces:
+        if self.second is None or means is None or not wants_second(first, pieces):
             return first
         opinions = [self.second.opinion(piece.audio) for piece in pieces]
         return heard_again(first, pieces, opinions, weigh, self.ways, means)

