@@ -34,7 +34,8 @@ from .test_requests import understanding
         (
             "care-home",
             "tell the lady that lunch is ready and if she says no tell the nurse that lunch is ready",
-            "start [(alerted-to resident lunchtime) [when (dismissed lunchtime): (alerted-to caregiver lunchtime)]]",
+            "start [(alerted-to resident lunchtime)"
+            " [when (dismissed lunchtime): (alerted-to caregiver lunchtime)]]",
         ),
     ],
 )
