@@ -61,7 +61,7 @@ def disagreement(
     if weight is None:
         return "not understood"
     words, different = len(text.split()), difference(text, free)
-    if gain is not None and words > SHORT and gain < _least(weight, words):
+    if gain is not None and words > SHORT and gain < least_gain(weight, words):
         return f"it is likelier to be what was heard freely, by {-gain:.1f} a word"
     if gain is not None and gain >= SURE and weight is not Weight.MOVING:
         return ""
@@ -72,7 +72,7 @@ def disagreement(
     return ""
 
 
-def _least(weight: Weight, words: int) -> float:
+def least_gain(weight: Weight, words: int) -> float:
     """The least that so many words must gain in likelihood, a word."""
     if weight is Weight.HARMLESS and words >= LONG:
         return UNLIKELY_HARMLESS

@@ -14,7 +14,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal as OneOf
 
-from polaris_nl.speech.agreement import BREAK, difference
+from polaris_nl.speech.agreement import BREAK, difference, least_gain
 from polaris_nl.speech.audio import contrast
 from polaris_nl.speech.doubt import MOST_ASKED, Means
 from polaris_nl.speech.hearing import Utterance, Ways
@@ -107,7 +107,10 @@ def heard_again(
             return first
         rivals = [r for r in rated if r.sensible and r.means != best.means]
         margin = best.score - max((r.score for r in rivals), default=-math.inf)
-        verdict = _verdict(best, margin, opinion, refused=not (first.accepted or first.doubts))
+        refused = not (first.accepted or first.doubts)
+        if refused and not best.heard and _is_foreign(best, piece):
+            return first
+        verdict = _verdict(best, margin, opinion, refused)
         if verdict == "unlikely":
             return first if first.doubts else _left_alone(first, best)
         if verdict == "no witness":
@@ -131,6 +134,12 @@ def heard_again(
 def _left_alone(first: Utterance, best: _Rated) -> Utterance:
     why = f"heard again, it is likelier to be other words, by {-best.surplus:.1f} a word"
     return replace(first, accepted=False, why_not=first.why_not or why)
+
+
+def _is_foreign(best: _Rated, piece: Spoken) -> bool:
+    """Whether the first recogniser's phrases explain the sound so badly that others were meant."""
+    words = len(piece.alternatives[0].split())
+    return bool(piece.gains) and piece.gains[0] < words * least_gain(best.found.weight, words)
 
 
 _Verdict = OneOf["certain", "doubtful", "unlikely", "no witness"]

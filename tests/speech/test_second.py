@@ -127,6 +127,12 @@ def test_questions_that_only_the_second_heard_are_other_peoples() -> None:
     assert said.doubts == ()
 
 
+def test_what_only_the_second_heard_must_be_explained_by_the_phrases_of_the_first() -> None:
+    opinion = Heard((CUP,), {CUP: -2.0})
+    assert both(opinion, "more of the cop", gains=[-5.0]).accepted
+    assert not both(opinion, "more of the cop", gains=[-30.0]).accepted
+
+
 def test_in_noise_what_is_sure_is_heard_again_too() -> None:
     speech = b"".join(blocks_of(spoken(CUP)))
     quiet = b"".join([*silence(0.5), speech])
