@@ -21,6 +21,7 @@ from polaris_nl.speech.ears import Ears
 from polaris_nl.speech.hearer import Heard, Hearer, Quick, Started
 from polaris_nl.speech.hearing import Utterance, near
 from polaris_nl.speech.modes import Attention, Cue, Happening, State, cue
+from polaris_nl.speech.recogniser import Spoken
 from polaris_nl.speech.sources import Source
 from polaris_nl.speech.speaker import Speaker
 from polaris_nl.speech.trouble import Trouble
@@ -177,13 +178,13 @@ class Listening:
         """In the answering thread: takes what was heard, and says what came of it."""
         spoken = heard.spoken
         if heard.quick and spoken.alternatives[0].split()[0] == heard.quick:
-            self._log(Utterance(heard.quick, True, spoken.alternatives, spoken.seconds), heard)
+            self._log(_certain(heard.quick, spoken), heard)
+            return
+        if self._is_mode(heard):
             return
         started = time.perf_counter()
         sense = Sense(self.conversation.session)
         said = self.ears.said([spoken], sense.weigh, sense.means)
-        if self._is_mode(said, heard):
-            return
         event = self._event(said, heard, time.perf_counter() - started + heard.decoding_s)
         reply = self.conversation.take(
             said, event, called, lambda: near([spoken], self._weigh, self.ears.ways)
@@ -197,17 +198,18 @@ class Listening:
         if reply.ends:
             self._over.set()
 
-    def _is_mode(self, said: Utterance, heard: Heard) -> bool:
+    def _is_mode(self, heard: Heard) -> bool:
+        """Whether what was heard is about listening itself; asleep, all else is passed over unread."""
         texts = heard.spoken.alternatives[:3]
         if self.attention.asleep:
             if WAKE in texts and heard.spoken.free in (WAKE, ""):
                 self._happened.put("wake")
-                self._log(said, heard)
+                self._log(_certain(WAKE, heard.spoken), heard)
                 self._say("I'm listening.", "mode")
             return True
         if SLEEP in texts:
             self._happened.put("sleep")
-            self._log(said, heard)
+            self._log(_certain(SLEEP, heard.spoken), heard)
             self.face.tells(
                 f'Asleep. Say "{WAKE}" when you need me; "stop" and "pause" still work.'
             )
@@ -236,3 +238,7 @@ class Listening:
     def _say(self, text: str, about: str) -> None:
         if self.speaker is not None and text:
             self.speaker.say(text, about)
+
+
+def _certain(text: str, spoken: Spoken) -> Utterance:
+    return Utterance(text, True, spoken.alternatives, spoken.seconds, spoken.free)
