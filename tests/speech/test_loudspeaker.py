@@ -9,7 +9,6 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-import sounddevice
 
 from polaris_nl.speech.audio import RATE, level
 from polaris_nl.speech.microphone import Microphone
@@ -25,6 +24,8 @@ PATIENCE_S = 20.0
 def card(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[SoundCard]:
     card = sound_card(tmp_path, monkeypatch)
     card.plug_in()
+    import sounddevice  # Only now: without PortAudio the card above has said what to install.
+
     sounddevice._terminate()  # PortAudio looks for devices once, when it starts.
     sounddevice._initialize()
     yield card
