@@ -104,6 +104,11 @@ def test_velocities_count_in_navigation_mode_until_half_a_second_of_silence(star
     assert sim.pose() == at
 
 
+def stands_at(pose: Pose, other: Pose) -> bool:
+    """Whether two poses are the same but for the last digits, which turning frames into others rounds."""
+    return pose.distance(other.x, other.y) < 1e-9 and abs(wrapped(pose.yaw - other.yaw)) < 1e-9
+
+
 def test_navigation_arrives_is_cancelled_and_gives_way_to_newer_goals(sim: Client) -> None:
     assert sim.call("/switch_to_navigation_mode")[0]
     goal = sim.beside("worktop")
@@ -121,7 +126,7 @@ def test_navigation_arrives_is_cancelled_and_gives_way_to_newer_goals(sim: Clien
     sim.until(lambda: sim.velocity() == (0.0, 0.0), "the base stops")
     at = sim.pose()
     sim.during(0.3)
-    assert sim.pose() == at
+    assert stands_at(sim.pose(), at)
     first = sim.go(sim.beside("desk"))
     second = sim.go(sim.beside("worktop"))
     assert sim.outcome(first)[0] == ABORTED
@@ -131,7 +136,7 @@ def test_navigation_arrives_is_cancelled_and_gives_way_to_newer_goals(sim: Clien
     assert sim.call("/switch_to_position_mode")[0]
     at = sim.pose()
     assert sim.outcome(sim.go(sim.beside("desk")))[0] == ABORTED
-    assert sim.pose() == at
+    assert stands_at(sim.pose(), at)
 
 
 def test_the_run_stop_ends_all_motion_until_it_is_released(start: Start) -> None:

@@ -31,7 +31,7 @@ from polaris_nl.execution.ros.driver import Driver
 from polaris_nl.execution.ros.knowledge import facts, sightings, unknown
 from polaris_nl.execution.ros.middleware import stay_on_this_machine
 from polaris_nl.execution.ros.mission import Mission
-from polaris_nl.execution.ros.owner import Owner, until
+from polaris_nl.execution.ros.owner import Late, Owner, until
 from polaris_nl.execution.ros.perception import Scene, perceive, remembered
 from polaris_nl.execution.ros.primitives import NAVIGATION, Primitives
 from polaris_nl.execution.ros.profile import Profile
@@ -45,6 +45,8 @@ from polaris_nl.model.state import Mutexes, State
 from polaris_nl.model.text import capital
 from polaris_nl.model.world import World
 
+TOLD_S = 2.0
+"""How long a robot that answers is given to say whether it may move."""
 LOOK_S = 0.05
 """How often percepts become beliefs."""
 STILL_S = 0.05
@@ -222,6 +224,10 @@ class StretchRobot:
                 else "see that its driver runs, and that this machine is in the same ROS domain"
             )
             raise RunError(f"{capital(self._profile.title)} doesn't answer; {way}") from error
+        with contextlib.suppress(Late):
+            # A run must not begin before the robot has had time to say that it isn't homed or can't move; a
+            # driver that never speaks of it is believed.
+            await until(lambda: vitals.vitals.told, TOLD_S, "telling how it is")
 
     async def _begin(self, goal: SendGoal) -> None:
         self._end_mission("cancelled", "another goal came")

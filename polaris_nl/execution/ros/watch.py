@@ -39,6 +39,11 @@ class Vitals:
     drift: float = 0.0
     speakers: Mapping[str, int] = field(default_factory=dict)
 
+    @property
+    def told(self) -> bool:
+        """Whether the robot has said by now what would keep it from moving."""
+        return self.homed is not None and self.runstopped is not None and self.mode != ""
+
 
 def health_of(vitals: Vitals, now: float, limits: Safety) -> Health:
     """How a robot is. The gravest problem comes first; a silent robot's old words count for nothing."""
