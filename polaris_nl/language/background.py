@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 
 from polaris_nl.language.clauses import Clause
 from polaris_nl.language.common import Common
@@ -21,27 +21,15 @@ _BE_OR_DO = frozenset(
         "want", "looks", "keeps", "keep", "never",
     )
 )  # fmt: skip
-_LATE = {
-    "he": ("is", "'s", "'ll", "will", "likes", "wants", "needs"),
-    "she": ("is", "'s", "'ll", "will", "likes", "wants", "needs"),
-    "it": ("is", "'s", "'ll", "will", "looks", "gets"),
-    "that": ("is", "'s", "'ll", "will", "looks"),
-    "they": ("are", "'re", "'ve", "'ll", "will", "keep", "like", "want", "have"),
-}
-"""How a sentence behind a request begins that only says why: "... she'll be wanting her tea"."""
 _CONDITIONS = frozenset(
     ("if", "when", "once", "unless", "until", "till", "after", "before", "otherwise")
 )
+_ENDING = _CONDITIONS - {"after", "before"} | {"and"}
+"""Words that what is told behind a request doesn't have: more may be asked for behind them. "He likes it
+after his nap" says no order."""
 _CORRECTING = frozenset(
     ("mean", "meant", "said", "wrong", "instead", "stop", "then", "not", "mind", "changed")
 )
-_SO = "so"
-_FOR = "for"
-_MOST_TOLD = 16
-_MOST_OCCASION = 7
-_LEAST_LATE = 4
-"""Words that a sentence behind a request has at least."""
-_MOST_LATE = 10
 _SMALL = frozenset(
     (
         "the",
@@ -60,6 +48,23 @@ _SMALL = frozenset(
         "that",
     )
 )
+_NO_VERBS = frozenset(
+    (
+        "to", "on", "in", "i", "we", "what", "into", "onto", "inside", "off", "over", "can", "could", "may",
+        "might", "back", "be", "have", "do", "let", "free", "see",
+    )
+)  # fmt: skip
+"""Words that goals can begin with and that are no verbs, or stand in anything that is told."""
+_BEFORE_VERBS = _SMALL | _BE_OR_DO | {"not", "might", "should", "for", "very", "so", "still", "too"}
+"""Words behind which a verb that goals begin with is no request: "likes to read", "is open", "a rest"."""
+_MODALS = frozenset(("will", "not"))
+_SO = "so"
+_FOR = "for"
+_MOST_TOLD = 16
+_MOST_OCCASION = 7
+_LEAST_LATE = 3
+"""Words that a sentence behind a request has at least."""
+_MOST_LATE = 12
 
 
 class Background:
@@ -67,12 +72,15 @@ class Background:
 
     Args:
         common: words that every domain shares.
+        verbs: verbs that goals begin with.
     """
 
-    def __init__(self, common: Common) -> None:
+    def __init__(self, common: Common, verbs: Collection[str]) -> None:
+        self._verbs = frozenset(verbs) - _NO_VERBS
         leads = (*common.fillers, *common.assure, *common.connectives.get("polite", ()))
         self._leads = PhraseSet(leads)
         self._fillers = PhraseSet((*common.fillers, *common.hesitations))
+        self._remarks = PhraseSet(common.remarks)
 
     def at(
         self,
@@ -85,8 +93,38 @@ class Background:
         if self.begins(tokens, at):
             yield from self._told_before(tokens, at, mentions, clauses)
             yield from self._occasion(tokens, at, mentions, clauses)
-        elif at and tokens[at] in _LATE:
-            yield from self._told_behind(tokens, at, clauses)
+        elif at:
+            yield from self.told_behind(tokens, at, clauses)
+
+    def remarks(self, tokens: Sequence[str]) -> Iterator[int]:
+        """Where what may be told behind a request can begin."""
+        return (at for at in range(1, len(tokens)) if self._remarks.length_at(tokens, at))
+
+    def told_behind(
+        self, tokens: Sequence[str], at: int, clauses: Sequence[Sequence[Clause]]
+    ) -> Iterator[Span]:
+        """`... she'll be wanting her tea`, at the end, where it is nothing that could be waited for."""
+        opening = self._remarks.length_at(tokens, at)
+        size = len(tokens)
+        rest = tokens[at + opening :]
+        if not opening or not rest or not _LEAST_LATE <= size - at <= _MOST_LATE:
+            return
+        if _ENDING & set(rest) or _CORRECTING & set(rest) or BREAK in rest or COMMA in rest:
+            return
+        told = zip(tokens[at + opening - 1 :], rest, strict=False)
+        if any(word in self._verbs and before not in _BEFORE_VERBS for before, word in told):
+            return  # "He is asleep take the floor mat away" asks for something, known or not.
+        start = at + opening
+        if tokens[start - 1] in _MODALS:
+            # "She'll find it there": what somebody else does is nothing to do.
+            done = (c.end for c in clauses[start] if c.kind == "goal")
+            start = max(done, default=start)
+        inside = (
+            c for there in clauses[start if start > at + opening else at + 1 :] for c in there
+        )
+        meant = any(c.form == "base" and (c.kind == "goal" or _leans(c)) for c in inside)
+        if not meant and not any(c.end > at + 2 for c in clauses[at]):
+            yield at, size
 
     def begins(self, tokens: Sequence[str], at: int) -> bool:
         """Whether only fillers stand before a position."""
@@ -137,21 +175,6 @@ class Background:
             if last not in _SMALL and not named and self._asks(tokens, end, clauses):
                 yield at, end
 
-    def _told_behind(
-        self, tokens: Sequence[str], at: int, clauses: Sequence[Sequence[Clause]]
-    ) -> Iterator[Span]:
-        """`... she'll be wanting her tea`, at the end, where it is nothing that could be waited for."""
-        size = len(tokens)
-        rest = tokens[at:size]
-        if not _LEAST_LATE <= len(rest) <= _MOST_LATE or rest[1] not in _LATE[tokens[at]]:
-            return
-        if _CONDITIONS & set(rest) or _CORRECTING & set(rest) or BREAK in rest or COMMA in rest:
-            return
-        inside = (c for there in clauses[at + 1 :] for c in there)
-        meant = any(c.kind in ("goal", "ellipsis") and c.form == "base" for c in inside)
-        if not meant and not any(c.end > at + 2 for c in clauses[at]):
-            yield at, size
-
     def _asks(self, tokens: Sequence[str], at: int, clauses: Sequence[Sequence[Clause]]) -> bool:
         """Whether something is asked for at a position, politely or not."""
         while at < len(tokens):
@@ -164,3 +187,8 @@ class Background:
             if at < len(tokens) and any(c.kind in ("state", "small") for c in clauses[at]):
                 return True
         return False
+
+
+def _leans(clause: Clause) -> bool:
+    """Whether a clause leans on a verb before it and names something; "it's cold in there" doesn't."""
+    return clause.kind == "ellipsis" and any(not m.pronoun for _, m in clause.bindings)

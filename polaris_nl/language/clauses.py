@@ -92,6 +92,7 @@ class ClauseFinder:
         self._by_word: dict[str, list[_Form]] = {}
         self._anywhere: list[_Form] = []
         self.verbs = verbs_of(grammar)
+        self.beginnings = _beginnings(grammar)
         for form in self._forms(grammar):
             words = first_words(form.template)
             if words is None:
@@ -247,14 +248,18 @@ class ClauseFinder:
 
 def verbs_of(grammar: Grammar) -> Verbs:
     """The forms of the verbs that a grammar's imperatives start with."""
-    bases = {
+    return Verbs(_beginnings(grammar), grammar.common.irregular)
+
+
+def _beginnings(grammar: Grammar) -> frozenset[str]:
+    """The words that imperatives start with, nearly all of them verbs."""
+    return frozenset(
         word
         for phrases in grammar.predicates.values()
         for key in ("goals", "not-goals", "asks")
         for template in phrases.wordings.get(key, ())
         for word in first_words(template) or ()
-    }
-    return Verbs(bases, grammar.common.irregular)
+    )
 
 
 _PRONOUN_TYPES: Mapping[str, tuple[str, ...]] = {

@@ -26,7 +26,7 @@ _FIELDS = (
     "schema", "lists", INTENTS, "fillers", "assure", "connectives", "refused", "pronouns", "determiners",
     "possessives", "all", "both", "rest", "none", "excepting", "quantified", "numbers", "ordinals", "neither",
     "irregular", "asides", "contrast", "reasons", "telling", "descriptors", "markers", "hesitations", "needing",
-    "homophones", "again", "beside", "whereabouts",
+    "homophones", "again", "beside", "whereabouts", "remarks",
 )  # fmt: skip
 
 
@@ -65,6 +65,7 @@ class Common:
         homophones: groups of words that sound alike.
         beside: before a thing that only says where another one is: "next to".
         whereabouts: what is said behind a thing and tells nothing: "on the floor".
+        remarks: how a sentence behind a request begins that only says why: "she'll be", "there's no".
         again: wordings with {x} that ask for the same with another thing.
         language: the folder's name.
     """
@@ -99,6 +100,7 @@ class Common:
     homophones: tuple[Phrase, ...] = ()
     beside: tuple[Phrase, ...] = ()
     whereabouts: tuple[Phrase, ...] = ()
+    remarks: tuple[Phrase, ...] = ()
     again: tuple[Parts, ...] = ()
     language: str = "en"
 
@@ -197,6 +199,7 @@ def read_common(path: Path, faults: list[GrammarError] | None = None) -> Common:
         ),
         beside=phrases("beside"),
         whereabouts=phrases("whereabouts"),
+        remarks=phrases("remarks"),
         again=tuple(
             template
             for text, line in file.items(fields.get("again"), "again")

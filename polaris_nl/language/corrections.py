@@ -23,6 +23,7 @@ from polaris_nl.language.changes import (
 )
 from polaris_nl.language.choosing import Choosing
 from polaris_nl.language.conditions import condition_in
+from polaris_nl.language.contrasted import put_instead
 from polaris_nl.language.cores import AROUND, Core, Cores, trimmed
 from polaris_nl.language.dialogue import Dialogue, Latest
 from polaris_nl.language.exchange import exchanged, used_in, without
@@ -94,6 +95,9 @@ class Corrections:
         if core.strength and (again := self._again.edited(utterance, words, program, dialogue)):
             return again
         mentions = self._language.mentions(words)
+        instead = put_instead(self._language, self._changes, words, touched, program, dialogue)
+        if instead is not None:
+            return self._applied(utterance, *instead, program, dialogue, touched)
         question: Unclear | None = None
         for match in self._patterns.matches(words, mentions, program, touched):
             if match.intent.startswith("correct-") and not core.strength and "y" not in match.slots:

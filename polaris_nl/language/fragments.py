@@ -104,7 +104,7 @@ class Fragments:
         self._telling = frozenset(word for p in common.telling for word in p)
         phrases = (*self._excepting, *self._contrast, *self._reasons)
         self._longest = max(map(len, phrases), default=0)
-        self._background = Background(common)
+        self.background = Background(common, clauses.beginnings)
 
     def at(
         self, tokens: Sequence[str], at: int, mentions: Mentions, clauses: Clauses
@@ -126,7 +126,7 @@ class Fragments:
         yield from self._beneficiaries(tokens, at, mentions)
         yield from self._told_of_people(tokens, at, mentions, clauses)
         yield from self._excuses(tokens, at, mentions, clauses)
-        for start, end in self._background.at(tokens, at, mentions, clauses):
+        for start, end in self.background.at(tokens, at, mentions, clauses):
             named = tuple(_named(mentions, start, end))
             told = Mention(start, end, " ".join(tokens[start:end]), parts=named)
             yield Fragment(end, TELLING_COST + REASON_WORD_COST * (end - start), "topic", told)
@@ -240,7 +240,7 @@ class Fragments:
         self, tokens: Sequence[str], at: int, mentions: Mentions, clauses: Clauses
     ) -> Iterator[Fragment]:
         """`my hands are full, could you ...`, `... I've got my hands full`: why it is asked for."""
-        first = self._background.begins(tokens, at) or tokens[at - 1] in (BREAK, COMMA)
+        first = self.background.begins(tokens, at) or tokens[at - 1] in (BREAK, COMMA)
         own = tokens[at] in ("my", "our", "i", "we")
         people = [m for m in mentions[at] if m.candidates and self._clauses.fits(m, ("person",))]
         if not own and not (first and people):
@@ -268,7 +268,7 @@ def _same_with(tokens: Sequence[str], at: int, mentions: Mentions) -> Iterator[F
     if not (before[-1:] and before[-1] in _LEADING) and before[-2:] not in _LEADING_PAIRS:
         return
     for mention in mentions[at]:
-        ends = mention.end == len(tokens) or tokens[mention.end] in (BREAK, COMMA, "and")
+        ends = mention.end == len(tokens) or tokens[mention.end] in (BREAK, COMMA, "and", "then")
         if ends and mention.candidates:
             yield Fragment(mention.end, BARE_COST, "again", mention)
 

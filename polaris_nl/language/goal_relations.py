@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from polaris_nl.language.structure import Step
-from polaris_nl.model.formula import Formula, Goal, Literal
+from polaris_nl.model.formula import Formula, Goal, Imply, Literal, Quantified
 
 SEPARATE = ("robot-at", "alerted-to", "person-in", "holding", "has")
 """Goals that are steps of their own when joined by "and": where the robot is, and what happens to people."""
@@ -41,6 +41,31 @@ def superseded(step: Step, goals: Sequence[Goal]) -> bool:
     moved = {thing_placed(n) for n in new if n.positive and says_a_place(n)}
     taken = [o for o in old if o.predicate == "holding" or says_a_place(o)]
     return len(taken) == len(old) and all(thing_placed(o) in moved for o in taken)
+
+
+def placed_all(step: Step, goals: Sequence[Goal]) -> Goal | None:
+    """What is wanted of all that was only to be picked up: "gather up the dishes and put them in the sink".
+
+    Args:
+        step: the step before.
+        goals: where "it" or "them" should be, said of each thing or of the latest.
+
+    Returns:
+        The same of everything that the step is about; None where it isn't only to be picked up.
+    """
+    all_of_it = step.goals[0] if len(step.goals) == 1 else None
+    if step.forbidden or not isinstance(all_of_it, Quantified):
+        return None
+    body, new = all_of_it.body, flat(goals)
+    if not isinstance(body, Imply) or len(new) != len(goals) or not new:
+        return None
+    held = body.conclusion
+    if not isinstance(held, Literal) or held.predicate != "holding" or not held.positive:
+        return None
+    every = {g.bind({thing_placed(g): held.args[0]}) for g in new if says_a_place(g) and g.positive}
+    if len(every) != 1 or not all(says_a_place(g) for g in new):
+        return None
+    return Quantified("forall", all_of_it.variables, Imply(body.condition, every.pop()))
 
 
 def says_a_place(literal: Literal) -> bool:

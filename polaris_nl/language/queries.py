@@ -28,6 +28,9 @@ LONGEST = 60
 _SMALL = ("the", "a", "an", "any", "all", "of", "some", "other", "more", "your", "my")
 _ABOUT_GOALS = ("why-not", "why", "when", "will", "able")
 _ABOUT_STEPS = ("after-step", "before-step", "checkpoint")
+_SUGGESTING = ("why", "do", "not", "you")
+_COMPARING = frozenset(("first", "before", "instead", "rather"))
+"""Words with which "why don't you" asks about the plan, rather than suggests something."""
 _BARE = ("where-robot", "first", "last", "length", "world", "people", "problems")
 
 
@@ -47,6 +50,9 @@ def answer_to(
     plain = [t for t in tokens if t not in (BREAK, COMMA)]
     if not plain or len(plain) > LONGEST:
         return None
+    suggests = tuple(plain[: len(_SUGGESTING)]) == _SUGGESTING and not _COMPARING & set(plain)
+    if suggests and len(program.checkpoints) == 1:
+        return None  # Where nothing is planned there is nothing to ask the reason of.
     reader = _Reader(language, program, dialogue)
     unclear: Unclear | None = None
     for inner, indirect in asking.within(plain):

@@ -330,7 +330,9 @@ class _Reader:
                 goals = tuple(g.negation if isinstance(g, Literal) else g for g in goals)
         elif item.clause is not None and item.clause.kind == "wish" and not item.clause.positive:
             forbidden = tuple(x.negation for x in flat(goals))  # "The cup should not be there."
-        elif self.done.is_hint(item, goals):
+        elif self.done.is_hint(item, goals) or (
+            not self._when and self.done.place_all(item, goals)
+        ):
             return
         elif self.done.steps and not self._when and self.done.supersedes(goals):
             self.done.steps.pop()

@@ -60,7 +60,9 @@ class Repairs:
     ) -> Iterator[list[str]]:
         """What remains where somebody says that they meant something else: "the desk, sorry, the table"."""
         corrected = itertools.chain(
-            self._corrected(tokens, mentions, self._markers), self._begun_again(tokens, mentions)
+            self._corrected(tokens, mentions, self._markers),
+            self._begun_again(tokens, mentions),
+            self._named_again(tokens, mentions),
         )
         yield from _different(tokens, (w for c in corrected for w in (c, _without_commas(c))))
 
@@ -191,6 +193,20 @@ class Repairs:
                     # Nothing but somebody else is named: "tell Ann that ..., no, tell Bob".
                     yield from self._replaced(before, rest[1:], at + 2, mentions)
                 yield [*before[:start], *rest]
+
+    def _named_again(
+        self, tokens: Sequence[str], mentions: Sequence[Sequence[Mention]]
+    ) -> Iterator[list[str]]:
+        """A thing right behind a "no" that stands right behind one of its type: "the cup no the plate"."""
+        for at in range(1, len(tokens) - 1):
+            if tokens[at] != _NO or _MORE & set(tokens[at:]):
+                continue
+            new = [m for m in mentions[at + 1] if m.candidates]
+            for start in range(max(at - BACK, 0), at):
+                same = tokens[start] == tokens[at + 1] and not _WAITS & set(tokens[:start])
+                old = [m for m in mentions[start] if m.end == at and same]
+                if any(self._kinds(o) & self._kinds(n) for o in old for n in new):
+                    yield [*tokens[:start], *tokens[at + 1 :]]
 
     def _said_again(self, before: list[str], rest: list[str]) -> Iterator[list[str]]:
         """A repair starts with the word at which what it repairs started: "the red no the blue cup"."""

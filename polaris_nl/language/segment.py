@@ -116,6 +116,18 @@ class Segmenter:
         final = [path for mode, paths in best[size].items() if mode in FINAL for path in paths]
         return [Cut(cost, items) for cost, _, items in sorted(final, key=lambda p: p[:2])]
 
+    def before_remark(
+        self, tokens: Sequence[str], mentions: Sequence[Sequence[Mention]]
+    ) -> tuple[str, ...]:
+        """Tokens without what is only told behind them: "... it's cold in there"."""
+        background = self._fragments.background
+        starts = [*background.remarks(tokens)]
+        if not starts:
+            return tuple(tokens)
+        clauses = [[*self._clauses.at(tokens, at, mentions)] for at in range(len(tokens))]
+        told = (at for at in starts if any(background.told_behind(tokens, at, clauses)))
+        return tuple(tokens[: next(told, len(tokens))])
+
     def _marks_at(self, tokens: Sequence[str], at: int) -> Iterator[tuple[int, Mark]]:
         if tokens[at] == BREAK:
             yield at + 1, "break"

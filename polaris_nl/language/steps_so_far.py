@@ -11,6 +11,7 @@ from polaris_nl.language.goal_relations import (
     SOUGHT,
     flat,
     one_at_a_time,
+    placed_all,
     says_a_place,
     superseded,
     thing_placed,
@@ -180,6 +181,15 @@ class StepsSoFar:
         """Whether the latest step was only the way to goals said in the same breath."""
         last = self.steps[-1]
         return superseded(last, goals) and (not self.new_step or bool(last.forbidden))
+
+    def place_all(self, item: Item, goals: Sequence[Goal]) -> bool:
+        """Wants "them" somewhere, where all of them were only to be picked up; whether it is so."""
+        taken_up = any(m.pronoun for _, m in item.clause.bindings) if item.clause else False
+        every = placed_all(self.steps[-1], goals) if taken_up and self.steps else None
+        if every is not None:
+            self.steps[-1] = replace(self.steps[-1], goals=(every,))
+            self.new_step = self.sought = False
+        return every is not None
 
     def was_found_for(self, goals: Sequence[Goal]) -> bool:
         """Whether a thing was only to be found for these goals: "if it's lost, find it and bring it to her"."""

@@ -181,6 +181,9 @@ class Understanding:
             return self._told(utterance, told), dialogue
         asked, dialogue = dialogue.asked, replace(dialogue, asked=None)
         core = self._corrections.core(tokens)
+        if core.strength:
+            kept = self._segmenter.before_remark(core.tokens, self.mentions(core.tokens))
+            core = replace(core, tokens=kept)
         told = self._commands.meant(core.words) if core.tokens != tuple(bare) else None
         if told is not None and told.commands[0] not in ("yes", "no"):
             return self._told(utterance, told), dialogue

@@ -1,0 +1,89 @@
+"""What is wanted in the place of what was asked for, both named: "give it to Anna instead of the host"."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from polaris_nl.automaton.automaton import START, Automaton
+from polaris_nl.automaton.edits import Edit, SetGoals
+from polaris_nl.language.changes import Changes
+from polaris_nl.language.dialogue import Dialogue
+from polaris_nl.language.exchange import exchanged
+from polaris_nl.language.generate import goals_in_words
+from polaris_nl.language.goal_relations import flat
+from polaris_nl.language.protocol import Language
+from polaris_nl.language.scope import Unclear
+from polaris_nl.language.tokens import PhraseSet
+from polaris_nl.model.formula import Goal, bind
+
+
+def put_instead(
+    language: Language,
+    changes: Changes,
+    words: Sequence[str],
+    touched: Sequence[str],
+    program: Automaton,
+    dialogue: Dialogue,
+) -> tuple[list[Edit], str] | None:
+    """The edits that put a goal in the place of one that differs from it in what is not wanted.
+
+    Args:
+        language: its other parts.
+        changes: reads what is wanted.
+        words: what was said, without marks.
+        touched: the steps of the latest edit, which come before the rest.
+        program: the program.
+        dialogue: what was said before.
+
+    Returns:
+        The edits and what they do in words; None where nothing of the kind was asked for before.
+    """
+    contrast = PhraseSet(language.grammar.common.contrast)
+    at = next((i for i in range(1, len(words)) if contrast.length_at(words, i)), None)
+    if at is None:
+        return None
+    start = at + contrast.length_at(words, at)
+    named = language.mentions(words)[start] if start < len(words) else ()
+    old = {c.entity for m in named if m.end == len(words) for c in m.candidates}
+    if not old:
+        return None
+    try:
+        steps = changes.steps(words[:at], dialogue)
+    except Unclear:
+        return None
+    if len(steps) != 1 or steps[0].when or steps[0].forbidden or not steps[0].goals:
+        return None
+    wanted = steps[0].goals
+    new = dict.fromkeys(a for g in flat(wanted) for a in g.args if a not in old)
+    for checkpoint in (*reversed(touched), *reversed(list(program.checkpoints))):
+        for before, after in ((b, a) for b in sorted(old) for a in new if checkpoint != START):
+            edits = _exchanged_only(language, wanted, checkpoint, (before, after), program)
+            if edits:
+                return edits, f"{goals_in_words(wanted, language.wording)} instead"
+    return None
+
+
+def _exchanged_only(
+    language: Language,
+    wanted: Sequence[Goal],
+    checkpoint: str,
+    pair: tuple[str, str],
+    program: Automaton,
+) -> list[Edit]:
+    """The edits that put one entity in another's place where that makes what is wanted, and nothing else."""
+    there = program.checkpoints[checkpoint].goals
+    incoming = program.incoming(checkpoint)
+    exchange = ((g, bind(g, {pair[0]: pair[1]})) for g in there)
+    goals = tuple(new if new in wanted else old for old, new in exchange)
+    if set(wanted) <= set(goals) and goals != there:
+        renamed = language.names.renamed(
+            program, checkpoint, goals, incoming.when if incoming else ()
+        )
+        return [SetGoals(checkpoint, goals), *renamed]
+    # Another sort of place: in the sink instead of the cupboard.
+    new = [pair[1]]
+    edits = list(
+        exchanged(program, [checkpoint], pair[0], new, None, language.world, language.names)
+    )
+    changed = [set(e.goals) for e in edits if isinstance(e, SetGoals)]
+    return edits if changed and changed[0] - set(there) == set(wanted) else []
