@@ -198,15 +198,18 @@ class Repairs:
         self, tokens: Sequence[str], mentions: Sequence[Sequence[Mention]]
     ) -> Iterator[list[str]]:
         """A thing right behind a "no" that stands right behind one of its type: "the cup no the plate"."""
+        # "To the kitchen no to the office" says the preposition again, too.
         for at in range(1, len(tokens) - 1):
             if tokens[at] != _NO or _MORE & set(tokens[at:]):
                 continue
-            new = [m for m in mentions[at + 1] if m.candidates]
-            for start in range(max(at - BACK, 0), at):
-                same = tokens[start] == tokens[at + 1] and not _WAITS & set(tokens[:start])
+            for lead, start in itertools.product((0, 1), range(max(at - BACK, 1), at)):
+                if at + 1 + lead >= len(tokens) or _WAITS & set(tokens[:start]):
+                    continue
+                same = tokens[start - lead] == tokens[at + 1]
                 old = [m for m in mentions[start] if m.end == at and same]
+                new = [m for m in mentions[at + 1 + lead] if m.candidates]
                 if any(self._kinds(o) & self._kinds(n) for o in old for n in new):
-                    yield [*tokens[:start], *tokens[at + 1 :]]
+                    yield [*tokens[: start - lead], *tokens[at + 1 :]]
 
     def _said_again(self, before: list[str], rest: list[str]) -> Iterator[list[str]]:
         """A repair starts with the word at which what it repairs started: "the red no the blue cup"."""

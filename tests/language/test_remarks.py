@@ -113,6 +113,15 @@ def test_what_is_wanted_instead_takes_the_place_of_only_that(
             "(at fork sideboard) [(at spoon sideboard)]",
         ),
         ("put the cup no the plate on the sideboard", "(at plate sideboard)"),
+        ("take the cup to the sideboard no to the countertop", "(at cup countertop)"),
+        ("take the cup to anna no to the host", "(has host cup)"),
+        ("take the magazine and put it away on the shelf", "(at magazine shelf)"),
+        ("the bottle could go on the sideboard", "(at bottle sideboard)"),
+        (
+            "if it happens that the fridge is open close it",
+            "when (open fridge): (not (open fridge))",
+        ),
+        ("give anna the fork before the others arrive", "(has guest fork)"),
         (
             "fork on the sideboard then the spoon then the cup",
             "(at fork sideboard) [(at spoon sideboard) [(at cup sideboard)]]",
@@ -123,6 +132,10 @@ def test_what_is_wanted_instead_takes_the_place_of_only_that(
 )
 def test_spoken_ways_to_say_more(said: str, expected: str) -> None:
     assert meant("dinner-party", said) == f"start [{expected}]"
+
+
+def test_a_guess_where_something_is_asks_for_nothing() -> None:
+    assert meant("dinner-party", "the bottle could be on the sideboard") == "refused"
 
 
 def test_picking_up_all_of_something_is_still_wanted_where_they_go_nowhere() -> None:
