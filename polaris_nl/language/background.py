@@ -7,20 +7,10 @@ from collections.abc import Collection, Iterator, Sequence
 from polaris_nl.language.clauses import Clause
 from polaris_nl.language.common import Common
 from polaris_nl.language.mention import Mention
+from polaris_nl.language.requests import BE_OR_DO, SMALL, SUBJECTS, Requests
 from polaris_nl.language.tokens import BREAK, COMMA, PhraseSet
 
 Span = tuple[int, int]
-_SUBJECTS = frozenset(
-    ("i", "we", "you", "they", "he", "she", "it", "that", "this", "there", "people", "everybody", "my", "our")
-)  # fmt: skip
-"""Words that a sentence about something else can begin with, besides what has a name."""
-_BE_OR_DO = frozenset(
-    (
-        "is", "are", "am", "was", "were", "be", "been", "'s", "'m", "'re", "'ve", "'d", "'ll", "has", "have",
-        "had", "can", "could", "will", "would", "do", "does", "did", "gets", "get", "needs", "need", "wants",
-        "want", "looks", "keeps", "keep", "never",
-    )
-)  # fmt: skip
 _CONDITIONS = frozenset(
     ("if", "when", "once", "unless", "until", "till", "after", "before", "otherwise")
 )
@@ -30,33 +20,6 @@ after his nap" says no order."""
 _CORRECTING = frozenset(
     ("mean", "meant", "said", "wrong", "instead", "stop", "then", "not", "mind", "changed")
 )
-_SMALL = frozenset(
-    (
-        "the",
-        "a",
-        "an",
-        "her",
-        "his",
-        "my",
-        "our",
-        "your",
-        "their",
-        "of",
-        "to",
-        "and",
-        "this",
-        "that",
-    )
-)
-_NO_VERBS = frozenset(
-    (
-        "to", "on", "in", "i", "we", "what", "into", "onto", "inside", "off", "over", "can", "could", "may",
-        "might", "back", "be", "have", "do", "let", "free", "see",
-    )
-)  # fmt: skip
-"""Words that goals can begin with and that are no verbs, or stand in anything that is told."""
-_BEFORE_VERBS = _SMALL | _BE_OR_DO | {"not", "might", "should", "for", "very", "so", "still", "too"}
-"""Words behind which a verb that goals begin with is no request: "likes to read", "is open", "a rest"."""
 _MODALS = frozenset(("will", "not"))
 _SO = "so"
 _FOR = "for"
@@ -76,7 +39,7 @@ class Background:
     """
 
     def __init__(self, common: Common, verbs: Collection[str]) -> None:
-        self._verbs = frozenset(verbs) - _NO_VERBS
+        self._requests = Requests(verbs)
         leads = (*common.fillers, *common.assure, *common.connectives.get("polite", ()))
         self._leads = PhraseSet(leads)
         self._fillers = PhraseSet((*common.fillers, *common.hesitations))
@@ -111,18 +74,18 @@ class Background:
             return
         if _ENDING & set(rest) or _CORRECTING & set(rest) or BREAK in rest or COMMA in rest:
             return
-        told = zip(tokens[at + opening - 1 :], rest, strict=False)
-        if any(word in self._verbs and before not in _BEFORE_VERBS for before, word in told):
-            return  # "He is asleep take the floor mat away" asks for something, known or not.
+        if any(self._requests.may_begin(tokens, i) for i in range(at + opening, size)):
+            return
         start = at + opening
         if tokens[start - 1] in _MODALS:
             # "She'll find it there": what somebody else does is nothing to do.
             done = (c.end for c in clauses[start] if c.kind == "goal")
             start = max(done, default=start)
-        inside = (
-            c for there in clauses[start if start > at + opening else at + 1 :] for c in there
+        first = start if start > at + opening else at + 1
+        inside = ((i, c) for i, there in enumerate(clauses) if i >= first for c in there)
+        meant = any(
+            c.form == "base" and (c.kind == "goal" or _leans(c, tokens[i])) for i, c in inside
         )
-        meant = any(c.form == "base" and (c.kind == "goal" or _leans(c)) for c in inside)
         if not meant and not any(c.end > at + 2 for c in clauses[at]):
             yield at, size
 
@@ -145,11 +108,11 @@ class Background:
     ) -> Iterator[Span]:
         """`the wine's been out all day so ...`: a sentence with a verb, and "so" before what is wanted."""
         subjects = [m.end for m in mentions[at] if not m.pronoun]
-        if tokens[at] in _SUBJECTS:
+        if tokens[at] in SUBJECTS:
             subjects.append(at + 1)
         if any(c.kind == "goal" for c in clauses[at]):
             return
-        if not any(w in _BE_OR_DO for end in subjects for w in tokens[end : end + 3]):
+        if not any(w in BE_OR_DO for end in subjects for w in tokens[end : end + 3]):
             return
         for end in range(at + 3, min(at + _MOST_TOLD, len(tokens) - 1) + 1):
             if tokens[end - 1] in _CONDITIONS or tokens[end - 1] in _CORRECTING - {"not"}:
@@ -172,7 +135,7 @@ class Background:
             if last in _CONDITIONS or last in (BREAK, COMMA):
                 return
             named = any(m.end == end for there in mentions[at + 1 : end] for m in there)
-            if last not in _SMALL and not named and self._asks(tokens, end, clauses):
+            if last not in SMALL and not named and self._asks(tokens, end, clauses):
                 yield at, end
 
     def _asks(self, tokens: Sequence[str], at: int, clauses: Sequence[Sequence[Clause]]) -> bool:
@@ -189,6 +152,7 @@ class Background:
         return False
 
 
-def _leans(clause: Clause) -> bool:
-    """Whether a clause leans on a verb before it and names something; "it's cold in there" doesn't."""
-    return clause.kind == "ellipsis" and any(not m.pronoun for _, m in clause.bindings)
+def _leans(clause: Clause, first: str) -> bool:
+    """Whether a clause asks for something with the verb before it; "in the office" tells where somebody is."""
+    named = [m for _, m in clause.bindings if not m.pronoun]
+    return clause.kind == "ellipsis" and bool(named) and (first == "to" or len(named) > 1)

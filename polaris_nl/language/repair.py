@@ -50,6 +50,7 @@ class Repairs:
         }
         self._starts = {p[-1] for mark in common.connectives.values() for p in mark if p}
         self._dropped = PhraseSet((*common.fillers, *common.hesitations))
+        self._remarks = PhraseSet(common.remarks)
         self._needing = PhraseSet(common.needing)
         self._markers = PhraseSet(common.markers)
         self._all_markers = PhraseSet((*common.markers, *common.hesitations))
@@ -91,6 +92,8 @@ class Repairs:
         counting = {tokens[m.start] for there in mentions for m in there if m.number and m.plural}
         for words in (bare, tokens):
             for at, word in enumerate(words):
+                if at and self._remarks.length_at(words, at):
+                    break  # In other words more could be passed over there.
                 for other in () if word in counting else self._alike.get(word, ()):
                     yield [*words[:at], other, *words[at + 1 :]]
 

@@ -20,6 +20,8 @@ def meant(world: str, said: str, *after: str) -> str:
     [
         "take tom the newspaper he can't find it anywhere",
         "take tom the newspaper he likes to read after his nap",
+        "take tom the newspaper he is waiting in the office",
+        "take tom the newspaper he can't find his way without the headlines",
         "take tom the newspaper bless him",
         "take tom the newspaper he was asking for",
         "take tom the newspaper there's no hurry",
@@ -42,6 +44,11 @@ def test_remarks_behind_a_request_are_passed_over(said: str) -> None:
         "put the cup on the desk there is something else take the floor mat away",
         "go to the office it is where the nurse is and fill the tray",
         "bring tom the cup that is chipped",
+        "put the cup on the desk he is asleep mop the floor",
+        "put the cup on the desk it is dark switch on the light",
+        "put the cup on the desk he is asleep ring up the doctor",
+        "put the cup on the desk she is waiting the plate on the table",
+        "put the cup on the desk she is waiting the book to tom",
     ],
 )
 def test_what_asks_for_more_is_no_remark(said: str) -> None:
