@@ -94,7 +94,8 @@ def _decodings(world: str, search: str) -> Decodings:
 
 @cache
 def _opinions(world: str) -> Opinions:
-    return Opinions(spoken_names(_understanding(world)))
+    understanding = _understanding(world)
+    return Opinions(spoken_names(understanding), understanding.phrases())
 
 
 @cache

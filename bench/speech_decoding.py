@@ -11,6 +11,7 @@ from typing import Any
 
 from bench.speech_audio import blocks
 from bench.speech_voices import FOLDER
+from polaris_nl.speech import guided
 from polaris_nl.speech.activity import Activity, Cutter
 from polaris_nl.speech.recogniser import Decoded, Decoder
 from polaris_nl.speech.whisper_recogniser import BEAM, WhisperOpinion, WhisperRecogniser
@@ -50,11 +51,21 @@ class Opinions:
 
     Args:
         names: what it is told that things are called.
+        phrases: what it is told that may be said.
     """
 
-    def __init__(self, names: Sequence[str]) -> None:
-        self._recogniser = WhisperRecogniser(names)
-        key = hashlib.sha256(repr(("whisper", BEAM, *names)).encode()).hexdigest()[:16]
+    def __init__(self, names: Sequence[str], phrases: Sequence[str]) -> None:
+        self._recogniser = WhisperRecogniser(names, phrases)
+        settings = (
+            "guided whisper",
+            BEAM,
+            guided.BEAM,
+            guided.GUIDED,
+            guided.A_WORD,
+            names,
+            phrases,
+        )
+        key = hashlib.sha256(repr(settings).encode()).hexdigest()[:16]
         self._path = FOLDER / "decodings" / f"{key}.jsonl"
         self._path.parent.mkdir(parents=True, exist_ok=True)
         self._known: dict[str, Any] = {}
@@ -96,10 +107,11 @@ class RememberedOpinion:
         """What it may have been."""
         return tuple(self._opinions.known(self._name, lambda: list(self._fresh.texts)))
 
-    def likelihood(self, text: str) -> float:
+    def likelihoods(self, texts: Sequence[str]) -> Sequence[float]:
         """How likely any words are."""
-        key = f"{self._name} {text}"
-        return float(self._opinions.known(key, lambda: self._fresh.likelihood(text)))
+        key = hashlib.sha256(f"{self._name} with the end {texts}".encode()).hexdigest()[:24]
+        found: list[float] = self._opinions.known(key, lambda: self._fresh.likelihoods(texts))
+        return found
 
 
 def cut(audio: bytes, activity: Activity) -> list[bytes]:

@@ -89,9 +89,6 @@ class EarMaker:
 
     def __init__(self, second: bool | None = None) -> None:
         self._second = is_installed() if second is None else second
-        if self._second:
-            # It takes half a second; nothing waits for it until something isn't sure.
-            threading.Thread(target=WhisperRecogniser().load, name="loading", daemon=True).start()
         folder = model_folder()
         self._activity: Callable[[], Activity] = SileroActivity
         self._wide = VoskModel(folder)
@@ -116,7 +113,10 @@ class EarMaker:
         free = VoskRecogniser(self._narrow)
         ways = Ways(alikes, Repairer(vocabulary))
         quick = VoskRecogniser(self._narrow, QUICK_PHRASES, alternatives=1)
-        second = WhisperRecogniser(names) if self._second else None
+        second = WhisperRecogniser(names, phrases) if self._second else None
+        if second is not None:
+            # It takes a second or two; nothing waits for it until something isn't sure.
+            threading.Thread(target=second.load, name="loading", daemon=True).start()
         return Ears(
             phrased.decoder(), free.decoder(), quick.decoder(), self._activity(), ways, second
         )  # fmt: skip
@@ -134,7 +134,7 @@ class EarMaker:
         vocabulary = {word for phrase in phrases for word in phrase.split()}
         quick = VoskRecogniser(self._narrow, QUICK_PHRASES, alternatives=1)
         ways = Ways(repairer=Repairer(vocabulary))
-        whisper = WhisperRecogniser(names)
+        whisper = WhisperRecogniser(names, phrases)
         return Ears(whisper.decoder(), None, quick.decoder(), self._activity(), ways)
 
     def free_ears(self) -> Ears:

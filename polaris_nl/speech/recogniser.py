@@ -90,8 +90,8 @@ class Opinion(Protocol):
         """What it may have been, the likeliest first; lower case, no punctuation."""
         ...
 
-    def likelihood(self, text: str) -> float:
-        """The natural logarithm of the likelihood of any words, given the sound."""
+    def likelihoods(self, texts: Sequence[str]) -> Sequence[float]:
+        """The natural logarithms of the likelihoods of any words, given the sound."""
         ...
 
 

@@ -10,8 +10,9 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import islice
 from typing import Literal as OneOf
 
 from polaris_nl.speech.agreement import BREAK, difference, least_gain
@@ -27,7 +28,11 @@ QUIET_DB = 18.0
 FIRST = 0.5
 """What the first recogniser's likelihood counts beside that of the second."""
 RATED, ALIKE = 12, 2
-"""Readings that are rated, and how many of them may mean the same: each takes a fiftieth of a second."""
+"""Readings that are understood, and how many of them may mean the same: each takes a hundredth of a second."""
+HEARD = 12
+"""Readings of the first recogniser that are rated."""
+FAR = 8.0
+"""What is so much less likely than the best that makes sense is no rival."""
 PARTLY = 6.0
 """By how much less likely a reading is held that makes sense only in part."""
 LEAST, MARGIN = -1.0, 1.0
@@ -179,38 +184,29 @@ def _verdict(best: _Rated, margin: float, opinion: Opinion, refused: bool) -> _V
 def _rated(
     chosen: Sequence[str], piece: Spoken, opinion: Opinion, weigh: Weigh, ways: Ways, means: Means
 ) -> list[_Rated]:
-    """The readings of either recogniser that make sense, rated by both."""
+    """The likeliest readings of either recogniser that make sense, rated by both."""
+    known = tuple(islice(readings(piece, ways.alikes), HEARD))
+    texts = list(dict.fromkeys(filter(None, (*opinion.texts, *known, piece.free))))
+    found: list[_Rated] = []
     if not opinion.texts:
-        return []
-    own = opinion.likelihood(opinion.texts[0])
+        return found
+    likelihoods = dict(zip(texts, opinion.likelihoods(texts), strict=True))
+    own = likelihoods[opinion.texts[0]]
     lowest = min(piece.gains, default=0.0)
-    known = set(readings(piece, ways.alikes))
-    found = []
-    for one, meant in _candidates(chosen, piece, opinion, weigh, ways, means):
-        likelihood = opinion.likelihood(one.reading)
-        heard = one.reading in known
-        gain = gain_of(piece, one.reading, ways.alikes) if heard else lowest
-        score = likelihood + FIRST * (gain or 0.0) - (PARTLY if one.weight is Weight.ASKING else 0)
-        surplus = (likelihood - own) / len(one.reading.split())
-        found.append(_Rated(one, heard, score, surplus, meant))
-    return found
-
-
-def _candidates(
-    chosen: Sequence[str], piece: Spoken, opinion: Opinion, weigh: Weigh, ways: Ways, means: Means
-) -> Iterator[tuple[Found, object]]:
-    """The readings that are worth being rated: not too many, and few that mean the same."""
+    gains = {t: (gain_of(piece, t, ways.alikes) or 0.0) if t in known else lowest for t in texts}
+    scores = {t: likelihoods[t] + FIRST * gains[t] for t in texts}
     alike: dict[object, int] = {}
-    texts = dict.fromkeys((*opinion.texts, *readings(piece, ways.alikes), piece.free))
-    rated = 0
-    for text in filter(None, texts):
+    for text in sorted(texts, key=lambda t: -scores[t]):
+        if len(found) >= RATED or (found and scores[text] < max(r.score for r in found) - FAR):
+            break
         one = placed(chosen, text, piece.free, 0.0, weigh)
         if one is None:
             continue
         meant = means(one.text)
         alike[meant] = alike.get(meant, 0) + 1
-        if alike[meant] <= ALIKE:
-            yield one, meant
-            rated += 1
-        if rated >= RATED:
-            return
+        if alike[meant] > ALIKE:
+            continue
+        score = scores[text] - (PARTLY if one.weight is Weight.ASKING else 0)
+        surplus = (likelihoods[text] - own) / len(one.reading.split())
+        found.append(_Rated(one, text in known, score, surplus, meant))
+    return found

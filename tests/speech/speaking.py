@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import lru_cache
 
+import numpy
+
 from polaris_nl.speech.audio import BLOCK, RATE, Converter
 from polaris_nl.speech.trouble import Trouble
 from polaris_nl.speech.voices import HibariVoice
@@ -35,6 +37,16 @@ def blocks_of(sound: bytes) -> Iterator[bytes]:
 def silence(seconds: float) -> list[bytes]:
     """Some seconds of silence."""
     return [SILENCE] * round(seconds * RATE / BLOCK)
+
+
+def in_noise(sound: bytes, decibels: float) -> bytes:
+    """Sound with hiss at a ratio to the power of its speech, the same each time."""
+    speech = numpy.frombuffer(sound, dtype="<i2").astype(float)
+    noise = numpy.random.default_rng(1).normal(size=len(speech))
+    noise = numpy.convolve(noise, numpy.ones(4) / 4, "same")
+    power = numpy.mean(speech[numpy.abs(speech) > 600] ** 2) / 10 ** (decibels / 10)
+    mixed = speech + noise * numpy.sqrt(power / numpy.mean(noise**2))
+    return bytes(numpy.clip(mixed, -32767, 32767).astype("<i2").tobytes())
 
 
 class Saying:
