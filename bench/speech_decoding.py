@@ -62,6 +62,8 @@ class Opinions:
             guided.BEAM,
             guided.GUIDED,
             guided.A_WORD,
+            guided.AT_MOST,
+            guided.WORDS_A_S,
             names,
             phrases,
         )

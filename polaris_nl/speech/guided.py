@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from math import ceil
 
 import numpy
 
@@ -17,9 +18,11 @@ from polaris_nl.speech.word_model import END, START, WordModel
 
 BEAM, FOLLOWED, FOUND = 12, 24, 10
 """Readings that are followed, the likeliest pieces that each may go on with, and readings that are returned."""
-GUIDED, A_WORD = 0.3, 1.0
-"""What the model of the phrases counts beside the recogniser, and what makes up for it at each word."""
-MOST_PIECES = 60
+GUIDED, A_WORD, AT_MOST = 0.3, 1.0, 0.5
+"""What the model of the phrases counts beside the recogniser, what makes up for it at each word, and the most
+that a word may gain by both: where few phrases make each word likely, saying all twice must not pay."""
+WORDS_A_S, MOST_PIECES = 5.0, 60
+"""The fastest speech, in words a second, and the most that is followed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +60,7 @@ class _Reading:
 
 
 def guided(
-    listening: Listening, prompt: Sequence[int], pieces: Pieces, model: WordModel
+    listening: Listening, prompt: Sequence[int], pieces: Pieces, model: WordModel, seconds: float
 ) -> list[str]:
     """What may have been said in words of the phrases, the likeliest first.
 
@@ -66,7 +69,9 @@ def guided(
         prompt: the pieces that all begins with.
         pieces: what it writes with.
         model: how words follow each other.
+        seconds: how long the sound is.
     """
+    most = ceil(seconds * WORDS_A_S)
     readings, whole = [_Reading(0.0, (START,), "", prompt[-1], 0)], dict[str, float]()
     found, memory = listening.following(numpy.array([prompt]))
     for _ in range(MOST_PIECES):
@@ -75,7 +80,7 @@ def guided(
         for reading in (r for r in on if r.piece == pieces.end):
             text = " ".join(reading.words[1:])
             whole[text] = max(whole.get(text, reading.score), reading.score)
-        readings = [r for r in on if r.piece != pieces.end][:BEAM]
+        readings = [r for r in on if r.piece != pieces.end and len(r.words) <= most][:BEAM]
         enough = sorted(whole.values(), reverse=True)[FOUND - 1 : FOUND]
         if not readings or (enough and enough[0] > readings[0].score):
             break
@@ -103,7 +108,8 @@ def _going_on(
                 if begun and begun not in model.words:
                     continue
                 if begun:
-                    score += GUIDED * model.log_probability(begun, words) + A_WORD
+                    gain = GUIDED * model.log_probability(begun, words) + A_WORD
+                    score += min(gain, AT_MOST)
                     words, begun = (*words, begun), ""
             if piece == pieces.end:
                 score += GUIDED * model.log_probability(END, words)

@@ -16,6 +16,7 @@ from threading import Lock
 from typing import TYPE_CHECKING, Any
 
 from polaris_nl.model.errors import SpeechError
+from polaris_nl.speech.audio import RATE
 from polaris_nl.speech.recogniser import Decoded
 from polaris_nl.speech.whisper_weights import read_weights
 from polaris_nl.speech.word_model import WordModel
@@ -95,13 +96,14 @@ class WhisperOpinion:
 
     def __init__(self, whisper: Whisper, sound: bytes, names: str, model: WordModel) -> None:
         self._whisper, self._names, self._model = whisper, names, model
-        self._encoded = whisper.encode(sound)
+        self._encoded, self._seconds = whisper.encode(sound), len(sound) / 2 / RATE
 
     @cached_property
     def texts(self) -> Sequence[str]:
         """What it may have been, as Vosk would write it: what was heard freely before what was guided."""
         free = filter(None, map(plain, self._whisper.heard(self._encoded, self._names)))
-        return tuple(dict.fromkeys((*free, *self._whisper.guided(self._listening, self._model))))
+        guided = self._whisper.guided(self._listening, self._model, self._seconds)
+        return tuple(dict.fromkeys((*free, *guided)))
 
     def likelihoods(self, texts: Sequence[str]) -> Sequence[float]:
         """The natural logarithm of the likelihood of any words, given the sound and nothing else."""
@@ -181,11 +183,13 @@ class Whisper:
 
         return self._decoder.listening(numpy.array(encoded)[0].astype("float32"))
 
-    def guided(self, listening: Listening, model: WordModel) -> list[str]:
+    def guided(self, listening: Listening, model: WordModel, seconds: float) -> list[str]:
         """What may have been said in words of the phrases, the likeliest first."""
         from polaris_nl.speech.guided import guided
 
-        return guided(listening, self._prompt(), self._pieces, model) if model.words else []
+        if not model.words:
+            return []
+        return guided(listening, self._prompt(), self._pieces, model, seconds)
 
     def likelihoods(self, listening: Listening, texts: Sequence[str]) -> list[float]:
         """The natural logarithm of the likelihood of words, given the sound."""
