@@ -16,6 +16,8 @@ import yaml
 from bench.speech_voices import sound_file, voices_of
 from polaris_nl.speech.audio import RATE
 
+SMOOTHED_S, HELD_S, MARGIN_DB = 0.03, 0.2, 15.9
+"""The constants of ITU-T P.56."""
 SET = Path(__file__).parent / "speech_set"
 CONDITIONS = ("clean", "kitchen 20 dB", "babble 20 dB", "kitchen 10 dB", "babble 10 dB")
 PARTS = {
@@ -86,14 +88,39 @@ def _samples(path: Path) -> Any:
 
 
 def _with_noise(samples: Any, kind: str, decibels: float, seed: int) -> Any:
-    """Noise at a ratio to the power of the speech, pauses left out of account."""
+    """Noise at a ratio to the active level of the speech."""
     random = numpy.random.default_rng(seed)
     noise = (_kitchen if kind == "kitchen" else _babble)(len(samples), random)
-    loud = samples[numpy.abs(samples) > 0.02]
-    power = float(numpy.mean(loud**2)) if len(loud) else 0.01
-    scale = numpy.sqrt(power / 10 ** (decibels / 10) / max(float(numpy.mean(noise**2)), 1e-12))
+    power = active_power(samples) / 10 ** (decibels / 10)
+    scale = numpy.sqrt(power / max(float(numpy.mean(noise**2)), 1e-12))
     mixed = samples + noise * scale
     return mixed / max(1.0, float(numpy.abs(mixed).max()))
+
+
+def active_power(samples: Any) -> float:
+    """The mean square of speech while somebody speaks: its active level by ITU-T P.56, method B, unlogged.
+
+    An envelope (twice smoothed with 30 ms) is compared with thresholds a factor of two apart, and what lies up
+    to 200 ms behind one that is reached counts as active; the level is that at which the active part's own
+    exceeds the threshold by 15.9 dB.
+    """
+    fall, times = numpy.exp(-1 / (RATE * SMOOTHED_S)), numpy.arange(RATE // 2)
+    answer = (1 - fall) ** 2 * (times + 1) * fall**times  # of both smoothings together
+    size = len(samples) + len(answer)
+    spectra = numpy.fft.rfft(numpy.abs(samples), size) * numpy.fft.rfft(answer, size)
+    envelope = numpy.fft.irfft(spectra, size)[: len(samples)]
+    total = float(numpy.sum(samples.astype("float64") ** 2))
+    levels, margins = list[float](), list[float]()
+    for threshold in (2.0**-bit for bit in range(15, 0, -1)):
+        reached = numpy.flatnonzero(envelope >= threshold)
+        if not len(reached):
+            break
+        held = numpy.minimum(numpy.diff(reached, append=len(samples)), round(RATE * HELD_S))
+        levels.append(10 * numpy.log10(total / float(numpy.sum(held))))
+        margins.append(levels[-1] - 20 * numpy.log10(threshold))
+    if not levels:
+        return 0.01
+    return 10 ** float(numpy.interp(-MARGIN_DB, [-m for m in margins], levels) / 10)
 
 
 def _kitchen(length: int, random: numpy.random.Generator) -> Any:
