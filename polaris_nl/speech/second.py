@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice
 from typing import Literal as OneOf
@@ -25,27 +25,30 @@ from polaris_nl.speech.weight import Weigh, Weight
 
 QUIET_DB = 18.0
 """What stands out less of its background was said in noise."""
-FIRST = 0.5
-"""What the first recogniser's likelihood counts beside that of the second."""
 RATED, ALIKE = 12, 2
 """Readings that are understood, and how many of them may mean the same: each takes a hundredth of a second."""
 HEARD = 12
 """Readings of the first recogniser that are rated."""
 FAR = 8.0
 """What is so much less likely than the best that makes sense is no rival."""
+BROKEN_OFF = 0.5
+"""Less than this, a word, is what it costs to go on in the middle of what was said; behind its end it costs far
+more. The second recogniser ends early too often for the likelihood of an end to show that."""
 PARTLY = 6.0
 """By how much less likely a reading is held that makes sense only in part."""
-LEAST, MARGIN = -1.0, 1.0
+LEAST, MARGIN = -1.5, 1.0
 """The least by which a reading may be likelier than the second recogniser's own words, a word, and than what
 means something else, to be done (differences of log-likelihoods)."""
-WEAK = 2.0
+WEAK = 1.5
 """What falls short of the least by this factor is left alone."""
 MOVING = -0.3
 """The least for what moves the robot."""
-SHORT, SHORT_LEAST, SHORT_MARGIN = 2, -0.1, 4.0
+SHORT, SHORT_LEAST, SHORT_MARGIN = 2, -0.1, 3.0
 """The same for so few words: the second recogniser needs more of them than the first."""
-UNHEARD_LEAST, UNHEARD_SHORT = -0.5, 3
+UNHEARD_LEAST, UNHEARD_SHORT = -1.0, 3
 """The least for words that only the second recogniser heard, and of how many there must be more."""
+REFUSED_LEAST, REFUSED_UNHEARD_LEAST = -1.0, -0.5
+"""The least for what the first recogniser refused: where it heard the words, too, and where it didn't."""
 
 _NOT = re.compile(r"n't\b|\b(?:not|never|unless)\b")
 
@@ -167,9 +170,11 @@ def _verdict(best: _Rated, margin: float, opinion: Opinion, refused: bool) -> _V
         return "certain" if best.heard else "doubtful"
     if surplus < LEAST * WEAK:
         return "unlikely"
-    # Nobody is asked about what may well be other people's talk, which passes for questions most.
-    least_alone = math.inf if weight is Weight.HARMLESS else 0.0
-    if refused and surplus < (LEAST if best.heard else least_alone):
+    # Nobody is asked about what may well be other people's talk, which passes for short questions most.
+    least = REFUSED_LEAST if best.heard else REFUSED_UNHEARD_LEAST
+    if not best.heard and weight is Weight.HARMLESS and words <= UNHEARD_SHORT:
+        least = math.inf
+    if refused and surplus < least:
         return "no witness"
     if weight is Weight.HARMLESS:
         return "certain" if surplus >= LEAST else "doubtful"
@@ -194,9 +199,9 @@ def _rated(
     own = likelihoods[opinion.texts[0]]
     lowest = min(piece.gains, default=0.0)
     gains = {t: (gain_of(piece, t, ways.alikes) or 0.0) if t in known else lowest for t in texts}
-    scores = {t: likelihoods[t] + FIRST * gains[t] for t in texts}
+    scores = {t: likelihoods[t] + gains[t] for t in texts if not _breaks_off(t, likelihoods)}
     alike: dict[object, int] = {}
-    for text in sorted(texts, key=lambda t: -scores[t]):
+    for text in sorted(scores, key=lambda t: -scores[t]):
         if len(found) >= RATED or (found and scores[text] < max(r.score for r in found) - FAR):
             break
         one = placed(chosen, text, piece.free, 0.0, weigh)
@@ -210,3 +215,13 @@ def _rated(
         surplus = (likelihoods[text] - own) / len(one.reading.split())
         found.append(_Rated(one, text in known, score, surplus, meant))
     return found
+
+
+def _breaks_off(text: str, likelihoods: Mapping[str, float]) -> bool:
+    """Whether one of the others goes on where a text ends, at hardly any cost."""
+    words = len(text.split())
+    return any(
+        likely > likelihoods[text] - BROKEN_OFF * (len(other.split()) - words)
+        for other, likely in likelihoods.items()
+        if other.startswith(f"{text} ")
+    )

@@ -20,7 +20,8 @@ WEIGHTS = {
     CUP: Weight.CHANGING, TRAY: Weight.CHANGING, f"don't {CUP}": Weight.CHANGING,
     "where is the cup": Weight.HARMLESS, "run the whole program": Weight.MOVING,
     "undo": Weight.CHANGING, "right": Weight.CHANGING, "move the desk": Weight.ASKING,
-    f"then {CUP}": Weight.CHANGING,
+    f"then {CUP}": Weight.CHANGING, f"{CUP} then go home": Weight.CHANGING,
+    "where is it": Weight.HARMLESS,
 }  # fmt: skip
 
 
@@ -119,11 +120,19 @@ def test_motion_asks_for_more_than_a_question() -> None:
     assert both(Heard(("and",), doubtful), where).accepted
 
 
-def test_questions_that_only_the_second_heard_are_other_peoples() -> None:
-    where = "where is the cup"
-    said = both(Heard((where,), {where: -1.0}), "were as the cub")
-    assert not said.accepted
-    assert said.doubts == ()
+@pytest.mark.parametrize(("words", "accepted"), [("where is it", False), ("where is the cup", True)])
+def test_short_questions_that_only_the_second_heard_are_other_peoples(
+    words: str, accepted: bool
+) -> None:
+    said = both(Heard((words,), {words: -1.0}), "were as the cub")
+    assert (said.accepted, said.doubts) == (accepted, ())
+
+
+@pytest.mark.parametrize(("likely", "heard"), [(-6.0, f"{CUP} then go home"), (-20.0, CUP)])
+def test_what_breaks_off_in_the_middle_is_no_reading(likely: float, heard: str) -> None:
+    longer = f"{CUP} then go home"
+    said = both(Heard((CUP, longer), {CUP: -5.0, longer: likely}), longer, gains=[4.0])
+    assert (said.text, said.accepted, said.doubts) == (heard, True, ())
 
 
 def test_what_only_the_second_heard_must_be_explained_by_the_phrases_of_the_first() -> None:
