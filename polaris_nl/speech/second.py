@@ -41,14 +41,16 @@ LEAST, MARGIN = -1.5, 1.0
 means something else, to be done (differences of log-likelihoods)."""
 WEAK = 1.5
 """What falls short of the least by this factor is left alone."""
+NOT_MARGIN = 4.0
+"""The margin to what has a "not" more or less."""
 MOVING = -0.3
 """The least for what moves the robot."""
 SHORT, SHORT_LEAST, SHORT_MARGIN = 2, -0.1, 3.0
 """The same for so few words: the second recogniser needs more of them than the first."""
 UNHEARD_LEAST, UNHEARD_SHORT = -1.0, 3
 """The least for words that only the second recogniser heard, and of how many there must be more."""
-REFUSED_LEAST, REFUSED_UNHEARD_LEAST = -1.0, -0.5
-"""The least for what the first recogniser refused: where it heard the words, too, and where it didn't."""
+REFUSED_LEAST = -0.5
+"""The least for what the first recogniser refused."""
 
 _NOT = re.compile(r"n't\b|\b(?:not|never|unless)\b")
 
@@ -115,16 +117,16 @@ def heard_again(
             return first
         rivals = [r for r in rated if r.sensible and r.means != best.means]
         margin = best.score - max((r.score for r in rivals), default=-math.inf)
+        near = [r.found.text for r in rivals if best.score - r.score < _margin(best, r)]
         refused = not (first.accepted or first.doubts)
         if refused and not best.heard and _is_foreign(best, piece):
             return first
-        verdict = _verdict(best, margin, opinion, refused)
+        verdict = _verdict(best, margin, bool(near), opinion, refused)
         if verdict == "unlikely":
             return first if first.doubts else _left_alone(first, best)
         if verdict == "no witness":
             return first
         if verdict == "doubtful":
-            near = [r.found.text for r in rivals if best.score - r.score < MARGIN]
             doubtful = doubtful or (best.found.text, *near)
         chosen = best.found.pieces
     text = BREAK.join(chosen)
@@ -153,12 +155,24 @@ def _is_foreign(best: _Rated, piece: Spoken) -> bool:
 _Verdict = OneOf["certain", "doubtful", "unlikely", "no witness"]
 
 
-def _verdict(best: _Rated, margin: float, opinion: Opinion, refused: bool) -> _Verdict:
+def _nots(text: str) -> int:
+    return len(_NOT.findall(text))
+
+
+def _margin(best: _Rated, rival: _Rated) -> float:
+    """By how much a reading must be likelier than one that means something else."""
+    return MARGIN if _nots(rival.found.reading) == _nots(best.found.reading) else NOT_MARGIN
+
+
+def _verdict(
+    best: _Rated, margin: float, contested: bool, opinion: Opinion, refused: bool
+) -> _Verdict:
     """What both recognisers together make of the reading that they find likeliest.
 
     Args:
         best: the reading.
         margin: by how much it is likelier than all that means something else.
+        contested: whether that is too little beside one of them.
         opinion: what the second one heard.
         refused: whether the first one would have left the words alone.
     """
@@ -171,19 +185,17 @@ def _verdict(best: _Rated, margin: float, opinion: Opinion, refused: bool) -> _V
     if surplus < LEAST * WEAK:
         return "unlikely"
     # Nobody is asked about what may well be other people's talk, which passes for short questions most.
-    least = REFUSED_LEAST if best.heard else REFUSED_UNHEARD_LEAST
-    if not best.heard and weight is Weight.HARMLESS and words <= UNHEARD_SHORT:
-        least = math.inf
-    if refused and surplus < least:
+    short_question = weight is Weight.HARMLESS and words <= UNHEARD_SHORT
+    if refused and (surplus < REFUSED_LEAST or (short_question and not best.heard)):
         return "no witness"
     if weight is Weight.HARMLESS:
         return "certain" if surplus >= LEAST else "doubtful"
     least = MOVING if weight is Weight.MOVING else LEAST
     if not best.heard:
         least = math.inf if words <= UNHEARD_SHORT else max(least, UNHEARD_LEAST)
-    if len(_NOT.findall(reading)) != len(_NOT.findall(opinion.texts[0])):
+    if _nots(reading) != _nots(opinion.texts[0]):
         least = max(least, 0.0)  # A "not" is easily lost, and nothing is more wrong.
-    return "certain" if surplus >= least and margin >= MARGIN else "doubtful"
+    return "certain" if surplus >= least and not contested else "doubtful"
 
 
 def _rated(

@@ -84,6 +84,13 @@ def test_a_not_that_only_one_heard_is_asked_about(own: float, accepted: bool) ->
     assert said.doubts == (() if accepted else (CUP,))
 
 
+@pytest.mark.parametrize(("likely", "accepted"), [(-5.0, False), (-9.0, True)])
+def test_a_not_that_may_have_been_lost_is_asked_about(likely: float, accepted: bool) -> None:
+    said = both(Heard((CUP,), {CUP: -3.0, f"don't {CUP}": likely}), CUP, f"don't {CUP}")
+    assert (said.text, said.accepted) == (CUP, accepted)
+    assert said.doubts == (() if accepted else (CUP, f"don't {CUP}"))
+
+
 def test_what_the_second_finds_unlikely_is_left_alone() -> None:
     opinion = Heard(("who is there",), {"who is there": -2.0, CUP: -40.0})
     said = both(opinion, CUP, gains=[0.1], free="mother gets the best")
@@ -120,7 +127,9 @@ def test_motion_asks_for_more_than_a_question() -> None:
     assert both(Heard(("and",), doubtful), where).accepted
 
 
-@pytest.mark.parametrize(("words", "accepted"), [("where is it", False), ("where is the cup", True)])
+@pytest.mark.parametrize(
+    ("words", "accepted"), [("where is it", False), ("where is the cup", True)]
+)
 def test_short_questions_that_only_the_second_heard_are_other_peoples(
     words: str, accepted: bool
 ) -> None:
