@@ -122,7 +122,7 @@ def utterance_of(*alternatives: str, again: str) -> Utterance:
 
 def test_motion_asks_for_more_than_a_question() -> None:
     run, where = "run the whole program", "where is the cup"
-    doubtful = {run: -5.0, where: -5.0, "and": -2.5}
+    doubtful = {run: -4.0, where: -4.0, "and": -2.5}
     assert both(Heard(("and",), doubtful), run).doubts == (run,)
     assert both(Heard(("and",), doubtful), where).accepted
 
