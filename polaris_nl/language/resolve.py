@@ -181,6 +181,10 @@ class Resolver:
 
     def _combined(self, clause: Clause, chosen: Sequence[Meant]) -> tuple[Formula, ...]:
         every = [m for m in chosen if m.every is not None]
+        if len(every) > 1:
+            raise Misfit(
+                '"Every" and "all" can stand once in a goal; name the other thing or place.'
+            )
         rows: list[tuple[str, ...]] = [()]
         for meant in chosen:
             terms = ("?x",) if meant.every is not None else meant.entities
