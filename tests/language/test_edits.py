@@ -136,3 +136,17 @@ def test_a_wait_is_no_correction() -> None:
     )
     assert "-[(at cup drying-rack)]->" in program
     assert "(at cup countertop)" in program
+
+
+@pytest.mark.parametrize(
+    "sentence",
+    [
+        "Put every cup in every drawer.",
+        "Move all the dishes to every table.",
+        "Then put everything in everything.",
+    ],
+)
+def test_all_of_two_kinds_at_once_is_no_goal(sentence: str) -> None:
+    program, outcome = said("dinner-party", [sentence])
+    assert "?x ?x" not in program
+    assert outcome in ("question", "refused")
