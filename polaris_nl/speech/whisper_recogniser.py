@@ -72,9 +72,8 @@ class WhisperRecogniser:
 
     def load(self) -> None:
         """Loads the model and learns the phrases, which takes a second or two, before anything is heard."""
-        _whisper()
-        with _LOADING:
-            _ = self._model
+        silence = bytes(2 * RATE)
+        _ = self.opinion(silence).texts  # The first time is slow, and nobody waits for this one.
 
     def opinion(self, sound: bytes) -> WhisperOpinion:
         """What a piece of speech may have been; 16 kHz mono 16-bit samples, of which 30 seconds count."""
