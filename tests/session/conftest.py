@@ -23,6 +23,11 @@ LIMIT_S = 20.0
 """How long a test waits for something that comes at once: only a fault makes it wait."""
 
 
+CUP = "Put the cup on the desk."
+HOME = "Then go home."
+TABLE = "(at cup desk)"
+
+
 @pytest.fixture(scope="session")
 def world() -> World:
     return load_world("care-home")
@@ -118,3 +123,8 @@ def add(session: Session, text: str) -> str:
     checkpoint = Checkpoint(name, name, (goal(text),))
     arrow = Transition(automaton.fresh_transition_id(), list(automaton.checkpoints)[-1], name)
     return session.edit([AddCheckpoint(checkpoint, arrow)], f"add {name}")
+
+
+def goals(automaton: Automaton) -> list[list[str]]:
+    """What holds at each checkpoint but the start."""
+    return [[str(g) for g in c.goals] for c in automaton.checkpoints.values()][1:]
