@@ -229,29 +229,37 @@ class Changes:
         other: str | None = None,
     ) -> Reshaped:
         """New steps before, after or between what is there."""
-        goals, when = self.goals(match.tokens, match.slots.get("g"), dialogue)
+        first, *rest = self._several(match.tokens, match.slots.get("g"), dialogue)
         name = program.checkpoints[this].name
         if match.intent == "before-that" and this == START:
             raise Misfit("")
-        new = Checkpoint(
-            program.fresh_checkpoint_id(),
-            self._language.names.checkpoint(goals, when, program),
-            goals,
-        )
-        words = goals_in_words(goals, self._language.wording)
+        new = self._new(first.goals, first.when, program)
+        words = steps_in_words([Step(first.goals), *rest], self._language.wording)
         if match.intent == "between" and other is not None:
-            two = program.checkpoints[other].name
             edits = put_between(program, new, this, other)
-            return edits, f"between the steps {name} and {two}, {words}", [new.id]
-        if match.intent == "at-start":
-            return put_after(program, new, START), f"first, {words}", [new.id]
-        if match.intent in ("before", "before-that"):
-            return (
-                put_before(program, new, this, when),
-                f"before the step {name}, {words}",
-                [new.id],
-            )
-        return put_after(program, new, this, when), f"after the step {name}, {words}", [new.id]
+            say = f"between the steps {name} and {program.checkpoints[other].name}, {words}"
+        elif match.intent == "at-start":
+            edits, say = put_after(program, new, START), f"first, {words}"
+        elif match.intent in ("before", "before-that"):
+            edits = put_before(program, new, this, first.when)
+            say = f"before the step {name}, {words}"
+        else:
+            edits = put_after(program, new, this, first.when)
+            say = f"after the step {name}, {words}"
+        added, all_edits = [new.id], [*edits]
+        for step in rest:
+            program = apply_all(program, edits)
+            new = self._new(step.goals, (), program)
+            edits = put_after(program, new, added[-1])
+            added.append(new.id)
+            all_edits += edits
+        return all_edits, say, added
+
+    def _new(
+        self, goals: tuple[Goal, ...], when: tuple[Literal, ...], program: Automaton
+    ) -> Checkpoint:
+        name = self._language.names.checkpoint(goals, when, program)
+        return Checkpoint(program.fresh_checkpoint_id(), name, goals)
 
     def _connected(
         self, match: Match, source: str, target: str, program: Automaton, dialogue: Dialogue
@@ -299,6 +307,18 @@ class Changes:
             Misfit: it is no step, or several.
             Unclear: a question has to be asked.
         """
+        step, *rest = self._several(tokens, span, dialogue)
+        if rest:
+            raise Misfit("")
+        return step.goals, step.when
+
+    def _several(self, tokens: Sequence[str], span: object, dialogue: Dialogue) -> list[Step]:
+        """The steps in a span of tokens, one after the other; the first may wait for something.
+
+        Raises:
+            Misfit: it is no step.
+            Unclear: a question has to be asked.
+        """
         assert isinstance(span, tuple)
         said = list(tokens[span[0] : span[1]])
         steps = self.steps(said, dialogue)
@@ -310,7 +330,7 @@ class Changes:
             or not all(_plain(s) for s in steps[1:])
         ):
             raise Misfit("")
-        return tuple(g for s in steps for g in s.goals), steps[0].when
+        return steps
 
     def steps(self, tokens: Sequence[str], dialogue: Dialogue) -> list[Step]:
         """The steps that some tokens ask for, none where they ask for none.

@@ -47,7 +47,7 @@ WHAT_INSTEAD = "I don't see what should be changed; say what you meant, or undo.
 _MORE = ("also", "too", "as well", "again")
 """Words of a sentence that adds to what was said, however it starts."""
 _NEVER = ("do", "not")
-_ONLY = "only"
+_ONLY, _PLEASE = "only", "please"
 _ON = ("and", "but", "then", "please")
 """Words between what isn't wanted and what is."""
 
@@ -76,6 +76,7 @@ class Corrections:
             return None
         if any(w in core.tokens for w in _MORE):
             return None
+        core = replace(core, tokens=tuple(w for w in core.tokens if w != _PLEASE) or core.tokens)
         try:
             return self._corrected(utterance, core, touched, program, dialogue)
         except Unclear as unclear:

@@ -50,7 +50,8 @@ class MentionFinder:
         self._numbers = common.numbers
         self._possessives = {k: v or "any" for k, v in common.possessives.items()}
         self._pronouns = {tuple(k.split()): k for k in common.pronouns}
-        self._adjectives = _adjectives(grammar)
+        self.adjectives = _adjectives(grammar)
+        """What adjectives say of a thing: (predicate, positive)."""
         self._which = PhraseSet(common.listed("which-is"))
         self._from = PhraseSet(common.listed("from"))
 
@@ -63,6 +64,10 @@ class MentionFinder:
             for listed in self._all(tokens, start + 1):
                 if listed.parts and "nor" in tokens[start : listed.end]:
                     yield replace(listed, start=start, quantifier="none", alternative=False)
+        if start < len(tokens) and tokens[start] == "both":
+            for listed in self._all(tokens, start + 1):
+                if listed.parts and not listed.alternative:
+                    yield replace(listed, start=start)
         for single in self._single(tokens, start):
             placed = list(self._placed(tokens, single))
             for mention in (*placed, single):
@@ -90,8 +95,8 @@ class MentionFinder:
 
     def _listed(self, tokens: Sequence[str], first: Mention) -> Iterator[Mention]:
         """`a, b and c`; `a or b`; each prefix that ends in a joined one."""
-        if first.text == "one":
-            return  # "In room one and the cup ..."
+        if first.text == "one" or (first.quantifier or first.pronoun) == "both":
+            return  # "In room one and the cup ..."; "both" stands before a list.
         parts, at, joined, alternative = [first], first.end, False, False
         while at < len(tokens) and len(parts) < 12:
             step = at + 1 if tokens[at] == COMMA else at
@@ -151,11 +156,11 @@ class MentionFinder:
                 yield replace(_longer(tokens, mention, place.end), place=place)
         word = tokens[inner] if inner < len(tokens) else ""
         every = bool(mention.quantifier) and tokens[at - 1] in THINGS
-        if word in self._adjectives and (inner > at or every):
+        if word in self.adjectives and (inner > at or every):
             # "The dishes that are dirty", "everything clean".
             yield replace(
                 _longer(tokens, mention, inner + 1),
-                states=(*mention.states, *self._adjectives[word]),
+                states=(*mention.states, *self.adjectives[word]),
             )
         # Which things are near others isn't known, so that only describes.
         size = self._beside.length_at(tokens, inner)
@@ -243,8 +248,8 @@ class MentionFinder:
             return at + 1, replace(mention, owner=self._possessives[word])
         if word in ("other", "others"):
             return at + 1, replace(mention, other=True)
-        if word in self._adjectives:
-            return at + 1, replace(mention, states=(*mention.states, *self._adjectives[word]))
+        if word in self.adjectives:
+            return at + 1, replace(mention, states=(*mention.states, *self.adjectives[word]))
         if (word,) in self._determiners and not mention.owner:
             return at + 1, mention
         if word == "of" and mention.number:

@@ -9,7 +9,7 @@ stand are not.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from polaris_nl.language.common import Common
 from polaris_nl.language.mention import Mention
@@ -19,6 +19,8 @@ from polaris_nl.language.verbs import Verbs
 BACK = 10
 """Words that a repair can take back at most."""
 _NO = "no"
+_HESITATING = frozenset(("uh", "um", "oh", "er", "erm", "ah", "hmm", "wait", "sorry"))
+"""Words before a "no" that say nothing."""
 _MORE = frozenset(("too", "also", "well", "then", "and"))
 """Words of what comes on top, and in the place of nothing."""
 _WAITS = frozenset(("if", "when", "once", "unless", "until", "till", "says", "said", "say"))
@@ -37,9 +39,16 @@ class Repairs:
         common: fillers, markers of corrections, words that sound alike.
         verbs: the forms of the domain's verbs.
         types: the type of each entity.
+        telling: adjectives that tell things from others, and can't be left out.
     """
 
-    def __init__(self, common: Common, verbs: Verbs, types: Mapping[str, str]) -> None:
+    def __init__(
+        self,
+        common: Common,
+        verbs: Verbs,
+        types: Mapping[str, str],
+        telling: Collection[str] = (),
+    ) -> None:
         self._common = common
         self._verbs = verbs
         self._types = types
@@ -54,7 +63,7 @@ class Repairs:
         self._needing = PhraseSet(common.needing)
         self._markers = PhraseSet(common.markers)
         self._all_markers = PhraseSet((*common.markers, *common.hesitations))
-        self._descriptors = {p[0] for p in common.descriptors}
+        self._descriptors = {p[0] for p in common.descriptors}.difference(telling)
 
     def corrections(
         self, tokens: Sequence[str], mentions: Sequence[Sequence[Mention]]
@@ -205,11 +214,14 @@ class Repairs:
         for at in range(1, len(tokens) - 1):
             if tokens[at] != _NO or _MORE & set(tokens[at:]):
                 continue
-            for lead, start in itertools.product((0, 1), range(max(at - BACK, 1), at)):
+            end = at
+            while end > 1 and tokens[end - 1] in _HESITATING:
+                end -= 1
+            for lead, start in itertools.product((0, 1), range(max(end - BACK, 1), end)):
                 if at + 1 + lead >= len(tokens) or _WAITS & set(tokens[:start]):
                     continue
                 same = tokens[start - lead] == tokens[at + 1]
-                old = [m for m in mentions[start] if m.end == at and same]
+                old = [m for m in mentions[start] if m.end == end and same]
                 new = [m for m in mentions[at + 1 + lead] if m.candidates]
                 if any(self._kinds(o) & self._kinds(n) for o in old for n in new):
                     yield [*tokens[: start - lead], *tokens[at + 1 :]]

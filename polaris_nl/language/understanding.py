@@ -70,7 +70,7 @@ class Understanding:
         self._commands = Commands(common)
         self.verbs = clauses.verbs
         types = {e.name: e.type for e in world.entities.values()}
-        repairs = Repairs(common, clauses.verbs, types)
+        repairs = Repairs(common, clauses.verbs, types, self._mentions.adjectives)
         self._spelling = Spelling(self.grammar, lexicon)
         self._refusals = Refusals(world, self._spelling.known, clauses, self.wording)
         self.questions = Questions(common, self.resolver, self.wording)

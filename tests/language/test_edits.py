@@ -150,3 +150,20 @@ def test_all_of_two_kinds_at_once_is_no_goal(sentence: str) -> None:
     program, outcome = said("dinner-party", [sentence])
     assert "?x ?x" not in program
     assert outcome in ("question", "refused")
+
+
+@pytest.mark.parametrize(
+    "edit",
+    [
+        "Before anything else, open the fridge, then put the cup in it.",
+        "Before that, open the fridge, then put the cup in it.",
+        "But first open the fridge and then put the cup in it.",
+    ],
+)
+def test_steps_put_between_others_keep_their_order(edit: str) -> None:
+    program, _ = said("care-home", ["Go home.", edit])
+    opened, put, home = (
+        program.index(g) for g in ("(open fridge)", "(in cup fridge)", "(robot-at home)")
+    )
+    assert opened < put < home
+    assert program.count("-[]->") == 3
