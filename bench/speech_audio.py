@@ -87,6 +87,12 @@ def _samples(path: Path) -> Any:
     return samples
 
 
+def kitchen(length: int, power: float, seed: int) -> Any:
+    """So many samples of a kitchen's noise with a mean square."""
+    noise = _kitchen(length, numpy.random.default_rng(seed))
+    return noise * numpy.sqrt(power / float(numpy.mean(noise**2)))
+
+
 def _with_noise(samples: Any, kind: str, decibels: float, seed: int) -> Any:
     """Noise at a ratio to the active level of the speech."""
     random = numpy.random.default_rng(seed)

@@ -64,6 +64,8 @@ class Opinions:
             guided.A_WORD,
             guided.AT_MOST,
             guided.WORDS_A_S,
+            guided.FAR,
+            guided.COMMONEST,
             names,
             phrases,
         )

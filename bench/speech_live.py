@@ -1,9 +1,11 @@
-"""`python -m bench.speech_live [--utterances N]`: the hands-free loop at a microphone, in real time.
+"""`python -m bench.speech_live [--utterances N] [--noise DB]`: the hands-free loop at a microphone, in real
+time.
 
 The microphone is a sound card made of software: speech is written to it at the pace of the world, comes
 out of its microphone, and goes through PulseAudio, ALSA and PortAudio to the loop that `listen` runs. Times
 count from the end of the last sound that was written to when the answer is shown, so the card's own delay
-(some 100 ms) is in them.
+(some 100 ms) is in them. With `--noise` a kitchen is heard that far below the speech all the time, and all
+is heard again by Whisper, where that is installed.
 """
 
 from __future__ import annotations
@@ -22,7 +24,7 @@ from contextlib import closing, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from bench.speech_sounds import SENTENCES, SILENCE, spoken
+from bench.speech_sounds import SENTENCES, SILENCE, Room, spoken
 from bench.table import Row, show
 from polaris_nl.automaton.automaton import Automaton
 from polaris_nl.hands_free.conversation import Conversation, Reply
@@ -74,7 +76,8 @@ class _Face:
 class _Mouth:
     """Speaks into the card, at the pace of the world; silence in between."""
 
-    def __init__(self) -> None:
+    def __init__(self, room: Room | None) -> None:
+        self._room = room
         order = [
             "pacat",
             "--device=vmic",
@@ -94,7 +97,7 @@ class _Mouth:
         for block in blocks:
             time.sleep(max(self._next - time.perf_counter(), 0.0))
             self._next = max(self._next, time.perf_counter() - _BLOCK_S) + _BLOCK_S
-            self._player.stdin.write(block)
+            self._player.stdin.write(block if self._room is None else self._room.heard(block))
             self._player.stdin.flush()
         return self._next
 
@@ -104,11 +107,16 @@ class _Mouth:
         self._player.wait()
 
 
-def rows(count: int = FEW) -> Iterator[Row]:
-    """The rows about the microphone; none where PulseAudio isn't installed."""
+def rows(count: int = FEW, noise_db: float | None = None) -> Iterator[Row]:
+    """The rows about the microphone; none where PulseAudio isn't installed.
+
+    Args:
+        count: how many utterances.
+        noise_db: how far the noise of a kitchen is below their active level; None for no noise.
+    """
     if shutil.which("pulseaudio") is None:
         return
-    found = measured(count)
+    found = measured(count, noise_db)
     own, third = [s * 1000 for s in found.echoes], max(len(found.echoes) // 3, 1)
     drift = statistics.median(own[-third:]) - statistics.median(own[:third])
     lost = f"; not answered: {', '.join(found.lost)}" if found.lost else ""
@@ -127,9 +135,10 @@ def rows(count: int = FEW) -> Iterator[Row]:
     )  # fmt: skip
 
 
-def measured(count: int) -> Measured:
+def measured(count: int, noise_db: float | None = None) -> Measured:
     """Says so many utterances, one after the other, each after the answer to the one before."""
     sounds = {text: spoken(text) for text in SAID}
+    room = Room.kitchen([*sounds.values()], noise_db) if noise_db is not None else None
     found, face = Measured(), _Face()
     with Session(load_world("care-home")) as session, _card():
         session.warm_up()
@@ -144,16 +153,18 @@ def measured(count: int) -> Measured:
             text = SAID[number % len(SAID)]
             if number % len(SAID) == 0:
                 session.begin_again(Automaton())
-            _utter(text, sounds[text], face, found)
+            _utter(text, sounds[text], room, face, found)
         found.share = (time.process_time() - used) / (time.perf_counter() - started)
         listening.stop()
         loop.join(_PATIENCE_S)
     return found
 
 
-def _utter(text: str, sound: Sequence[bytes], face: _Face, found: Measured) -> None:
+def _utter(
+    text: str, sound: Sequence[bytes], room: Room | None, face: _Face, found: Measured
+) -> None:
     # A new player each time: what one holds back grows with each pause that is made.
-    with closing(_Mouth()) as mouth:
+    with closing(_Mouth(room)) as mouth:
         mouth.say([SILENCE] * _BEFORE)
         while not face.shown.empty():
             face.shown.get()
@@ -195,7 +206,9 @@ def main() -> None:
     """Measures and prints."""
     parser = argparse.ArgumentParser(description="The hands-free loop at a microphone.")
     parser.add_argument("--utterances", type=int, default=MANY, help="how many, in a row")
-    show(rows(parser.parse_args().utterances))
+    parser.add_argument("--noise", type=float, metavar="DB", help="a kitchen, that far below it")
+    given = parser.parse_args()
+    show(rows(given.utterances, given.noise))
 
 
 if __name__ == "__main__":

@@ -13,6 +13,9 @@ BEFORE_S = 0.5
 """Sound kept from before speech was noticed, so that first words aren't lost."""
 PAUSE_S = 0.7
 """Silence that ends a piece of speech, unless the words so far say otherwise."""
+KEPT_S = 0.2
+"""Silence kept behind speech. More of it is waited for and tells nothing: so what is heard doesn't depend on
+how long the wait was, and can be looked into while it lasts."""
 LONGEST_S = 30.0
 """A piece of speech is cut here, whatever is heard: noise that passes for a voice never pauses."""
 LIKELY, UNLIKELY = 0.5, 0.35
@@ -72,7 +75,8 @@ class Cut:
     """What a block brought.
 
     Attributes:
-        sound: what belongs to the piece of speech that goes on; at its start, what came before, too.
+        sound: what belongs to the piece of speech that goes on; at its start, what came before, too, and of a
+            long silence only what is kept, unless speech follows it.
         starts: whether a piece starts here.
         ends: whether it ends here.
         pause_s: seconds of silence at its end so far.
@@ -107,6 +111,7 @@ class Cutter:
         self._likely = 0
         self._silent_s = 0.0
         self._length = 0
+        self._held: list[bytes] = []
 
     @property
     def speaking(self) -> bool:
@@ -124,16 +129,26 @@ class Cutter:
         if not self._speaking:
             return self._waiting(block, chances)
         self._length += len(block)
+        enough = self._silent_s >= KEPT_S
         for chance in chances:
             self._silent_s = 0.0 if chance >= UNLIKELY else self._silent_s + self._activity.frame_s
+        self._held.append(block)
+        sound = b""
+        if not enough or any(chance >= UNLIKELY for chance in chances):
+            sound, self._held = b"".join(self._held), []
         ends = self._silent_s >= pause_s or self._length >= LONGEST_S * RATE * 2
         silence = self._silent_s
         if ends:
-            self._rest_of_piece()
-        return Cut(block, ends=ends, pause_s=silence)
+            self.end()
+        return Cut(sound, ends=ends, pause_s=silence)
+
+    def forget(self) -> None:
+        """Lets go of the silence that would belong to the piece if speech followed it."""
+        self._held = []
 
     def end(self) -> None:
         """Ends the piece that goes on: its words are whole, or the sound has ended."""
+        self._before.extend(self._held)
         self._rest_of_piece()
 
     def _waiting(self, block: bytes, chances: list[float]) -> Cut:

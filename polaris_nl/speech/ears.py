@@ -7,13 +7,14 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 from polaris_nl.speech.activity import Activity, SileroActivity
+from polaris_nl.speech.ahead import Ahead
 from polaris_nl.speech.doubt import Means
 from polaris_nl.speech.hearing import Utterance, Ways, utterance
 from polaris_nl.speech.lexicon import SoundAlikes, sound_alikes
 from polaris_nl.speech.models import NARROW, model_folder
-from polaris_nl.speech.recogniser import Decoder, SecondRecogniser, Spoken, pieces
+from polaris_nl.speech.recogniser import Decoder, Spoken, pieces
 from polaris_nl.speech.repair import Repairer
-from polaris_nl.speech.second import heard_again, wants_second
+from polaris_nl.speech.second import heard_again, in_noise, wants_second
 from polaris_nl.speech.vosk_recogniser import VoskModel, VoskRecogniser
 from polaris_nl.speech.weight import Weigh
 from polaris_nl.speech.whisper_recogniser import WhisperRecogniser, is_installed
@@ -45,12 +46,22 @@ class Ears:
     quick: Decoder
     activity: Activity
     ways: Ways
-    second: SecondRecogniser | None = None
+    second: Ahead | None = None
 
     @property
     def alikes(self) -> SoundAlikes:
         """Which of the world's words are listened for under other words, and which can't be heard."""
         return self.ways.alikes
+
+    def expect(self, audio: bytes, alike: bool) -> None:
+        """A piece of speech may have ended: if it will probably be heard again, that begins now.
+
+        Args:
+            audio: the piece.
+            alike: whether the first recogniser's decoders hear the same so far.
+        """
+        if self.second is not None and (not alike or in_noise(audio)):
+            self.second.begin(audio)
 
     def utterance(
         self, blocks: Iterable[bytes], weigh: Weigh, means: Means | None = None
@@ -118,7 +129,8 @@ class EarMaker:
             # It takes a second or two; nothing waits for it until something isn't sure.
             threading.Thread(target=second.load, name="loading", daemon=True).start()
         return Ears(
-            phrased.decoder(), free.decoder(), quick.decoder(), self._activity(), ways, second
+            phrased.decoder(), free.decoder(), quick.decoder(), self._activity(), ways,
+            Ahead(second) if second is not None else None,
         )  # fmt: skip
 
     def whisper_ears(self, phrases: Sequence[str], names: Iterable[str] = ()) -> Ears:

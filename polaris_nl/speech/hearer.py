@@ -5,9 +5,9 @@ from __future__ import annotations
 import time
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from polaris_nl.speech.activity import BEFORE_S, LONGEST_S, PAUSE_S, Cutter
+from polaris_nl.speech.activity import BEFORE_S, KEPT_S, LONGEST_S, PAUSE_S, Cutter
 from polaris_nl.speech.audio import RATE
 from polaris_nl.speech.ears import Ears
 from polaris_nl.speech.recogniser import UNKNOWN, Decoded, Spoken
@@ -41,8 +41,6 @@ OPEN = frozenset(
     ]
 )
 """Words that hardly a sentence ends with: whoever pauses after one goes on."""
-LOOK_S = 0.2
-"""Silence after which it is asked whether the words so far are enough."""
 _BYTES_A_SECOND = RATE * 2
 
 
@@ -109,7 +107,7 @@ class Hearer:
     def _begin(self) -> None:
         self._audio.clear()
         self._quick, self._steady, self._acted = "", 0, ""
-        self._pause_s, self._weighed = PAUSE_S, [""]
+        self._pause_s = PAUSE_S
 
     def call(self) -> None:
         """Attention begins now: speech that goes on is cut, and only its last half second is kept."""
@@ -127,28 +125,35 @@ class Hearer:
         self._recent.append(block)
         cut = self._cutter.push(block, self._pause_s)
         if self._called and not self._audio:
-            cut = type(cut)(b"".join(self._recent), True, cut.ends, cut.pause_s)
-        if not cut.sound:
+            cut = replace(cut, sound=b"".join(self._recent), starts=True)
+            self._cutter.forget()
+        starts = not self._audio
+        if starts and not cut.sound:
             return
-        if not self._audio:
+        if starts:
             self._attentive = attentive
             yield Started()
-        self._audio += cut.sound
-        self._ears.quick.feed(cut.sound)
-        if self._attentive:
-            self._ears.phrased.feed(cut.sound)
-            if self._ears.free is not None:
-                self._ears.free.feed(cut.sound)
+        self._feed(cut.sound)
+        self._ears.quick.feed(
+            cut.sound if starts else block
+        )  # "Stop" doesn't wait for more speech.
         yield from self._quickly()
         if cut.ends or len(self._audio) >= LONGEST_S * _BYTES_A_SECOND:
             yield from self._ended(cut.pause_s)
-        elif cut.pause_s >= LOOK_S and self._attentive:
-            self._pause_s = self._wanted()
+        elif cut.pause_s >= KEPT_S and cut.sound and self._attentive:
+            self._look()
 
     def end(self) -> Iterator[Happening]:
         """The sound has ended."""
         if self._audio:
             yield from self._ended(0.0)
+
+    def _feed(self, sound: bytes) -> None:
+        self._audio += sound
+        if sound and self._attentive:
+            self._ears.phrased.feed(sound)
+            if self._ears.free is not None:
+                self._ears.free.feed(sound)
 
     def _quickly(self) -> Iterator[Quick]:
         words = self._ears.quick.partial().split()
@@ -159,16 +164,14 @@ class Hearer:
             self._acted = QUICK[word]
             yield Quick(self._acted)
 
-    def _wanted(self) -> float:
-        """The silence that ends this piece."""
+    def _look(self) -> None:
+        """The speaker pauses: how long is waited for more, and may all be heard again meanwhile?"""
         found = [self._ears.phrased.partial()]
         if self._ears.free is not None:
             found.append(self._ears.free.partial())
-        if found != self._weighed:
-            self._weighed = found
-            # Last words are the least certain: whichever decoder has them right counts.
-            self._pause_s = min(_ending(t.split(), self._weigh(t) if t else None) for t in found)
-        return self._pause_s
+        # Last words are the least certain: whichever decoder has them right counts.
+        self._pause_s = min(_ending(t.split(), self._weigh(t) if t else None) for t in found)
+        self._ears.expect(bytes(self._audio), alike=len(set(found)) == 1)
 
     def _ended(self, pause_s: float) -> Iterator[Heard]:
         ended = self._clock()

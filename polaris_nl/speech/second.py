@@ -84,9 +84,12 @@ def wants_second(first: Utterance, pieces: Sequence[Spoken]) -> bool:
 
     In noise also what both decodings of the first recogniser bear out: they go astray together.
     """
-    return bool(pieces) and not (
-        first.sure and all(contrast(piece.audio) >= QUIET_DB for piece in pieces)
-    )
+    return bool(pieces) and not (first.sure and not any(in_noise(piece.audio) for piece in pieces))
+
+
+def in_noise(audio: bytes) -> bool:
+    """Whether a piece of speech was said in noise; 16 kHz mono 16-bit samples."""
+    return contrast(audio) < QUIET_DB
 
 
 def heard_again(

@@ -53,9 +53,17 @@ class WhisperDecoder:
         """Numbers through a linear layer."""
         return _array(x @ self._arrays[f"{name}/weight"] + self._arrays[f"{name}/bias"])
 
-    def likely(self, x: Array) -> Array:
-        """Logarithms of how likely each word piece is to come next, (places, all pieces) of (places, w)."""
-        scores = x @ self.pieces.T
+    def likely(self, x: Array, weights: Array | None = None) -> Array:
+        """Logarithms of how likely each word piece is to come next.
+
+        Args:
+            x: what the decoder makes of each place, (places, w).
+            weights: those of the pieces that count, (pieces, w); None for all.
+
+        Returns:
+            (places, pieces).
+        """
+        scores = x @ (self.pieces if weights is None else weights).T
         scores -= scores.max(-1, keepdims=True)
         scores -= numpy.log(numpy.exp(scores).sum(-1, keepdims=True))
         return _array(scores)
@@ -121,6 +129,7 @@ class Listening:
         asked, keys, values = three.reshape(b, t, 3, self._decoder.heads, -1).transpose(
             2, 0, 3, 1, 4
         )
+        asked = _scaled(asked)
         if before is not None:
             keys = numpy.concatenate([before[0], keys], 2)
             values = numpy.concatenate([before[1], values], 2)
@@ -136,7 +145,7 @@ class Listening:
         b, t, w = x.shape
         keys, values = self._sound[at]
         asked = self._decoder.linear(x, f"{layer}/{_CROSS}/linear_0")
-        asked = asked.reshape(b * t, self._decoder.heads, -1).transpose(1, 0, 2)
+        asked = _scaled(asked.reshape(b * t, self._decoder.heads, -1).transpose(1, 0, 2))
         found = _attended(asked @ keys, values).transpose(1, 0, 2).reshape(b, t, w)
         return self._decoder.linear(found, f"{layer}/{_CROSS}/linear_2")
 
@@ -146,11 +155,16 @@ def _turned(name: str, array: Array) -> Array:
     return array.T if "/linear_" in name and array.ndim == 2 else array
 
 
+def _scaled(asked: Array) -> Array:
+    """What is asked, so that its products with the keys don't grow with their size."""
+    return _array(asked / numpy.sqrt(asked.shape[-1]))
+
+
 def _attended(scores: Array, values: Array) -> Array:
     """Values in the shares that scores give them."""
-    scores = scores / numpy.sqrt(values.shape[-1]).astype("float32")
-    shares = numpy.exp(scores - scores.max(-1, keepdims=True))
-    return _array((shares / shares.sum(-1, keepdims=True)) @ values)
+    scores = scores - scores.max(-1, keepdims=True)
+    shares = numpy.exp(scores, out=scores)
+    return _array((shares @ values) / shares.sum(-1, keepdims=True))
 
 
 def _gelu(x: Array) -> Array:

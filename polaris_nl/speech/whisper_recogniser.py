@@ -24,7 +24,7 @@ from polaris_nl.speech.word_model import WordModel
 if (
     TYPE_CHECKING
 ):  # They import numpy, which takes a while, and isn't needed until something is heard again.
-    from polaris_nl.speech.guided import Pieces
+    from polaris_nl.speech.guided import Guide, Pieces
     from polaris_nl.speech.whisper_decoder import Listening
 
 BEAM, THREADS = 5, 2
@@ -61,10 +61,11 @@ class WhisperRecogniser:
             )
         self._names = ", ".join(dict.fromkeys(names))
         self._phrases = phrases
+        self._guiding = Lock()
 
     @cached_property
-    def _model(self) -> WordModel:
-        return WordModel(self._phrases)
+    def _guide(self) -> Guide | None:
+        return _whisper().guide(self._phrases)
 
     def decoder(self) -> WhisperHearing:
         """A decoder; the model is shared."""
@@ -78,9 +79,9 @@ class WhisperRecogniser:
     def opinion(self, sound: bytes) -> WhisperOpinion:
         """What a piece of speech may have been; 16 kHz mono 16-bit samples, of which 30 seconds count."""
         whisper = _whisper()
-        with _LOADING:
-            model = self._model
-        return WhisperOpinion(whisper, sound, self._names, model)
+        with self._guiding:
+            guide = self._guide
+        return WhisperOpinion(whisper, sound, self._names, guide)
 
 
 class WhisperOpinion:
@@ -90,18 +91,22 @@ class WhisperOpinion:
         whisper: the loaded model.
         sound: 16 kHz mono 16-bit samples.
         names: words that were said before, as far as Whisper is told.
-        model: how words of the phrases follow each other.
+        guide: what may be said, or None.
     """
 
-    def __init__(self, whisper: Whisper, sound: bytes, names: str, model: WordModel) -> None:
-        self._whisper, self._names, self._model = whisper, names, model
+    def __init__(self, whisper: Whisper, sound: bytes, names: str, guide: Guide | None) -> None:
+        self._whisper, self._names, self._guide = whisper, names, guide
         self._encoded, self._seconds = whisper.encode(sound), len(sound) / 2 / RATE
 
     @cached_property
     def texts(self) -> Sequence[str]:
         """What it may have been, as Vosk would write it: what was heard freely before what was guided."""
         free = filter(None, map(plain, self._whisper.heard(self._encoded, self._names)))
-        guided = self._whisper.guided(self._listening, self._model, self._seconds)
+        guided = (
+            self._whisper.guided(self._listening, self._guide, self._seconds)
+            if self._guide is not None
+            else ()
+        )
         return tuple(dict.fromkeys((*free, *guided)))
 
     def likelihoods(self, texts: Sequence[str]) -> Sequence[float]:
@@ -182,13 +187,18 @@ class Whisper:
 
         return self._decoder.listening(numpy.array(encoded)[0].astype("float32"))
 
-    def guided(self, listening: Listening, model: WordModel, seconds: float) -> list[str]:
+    def guide(self, phrases: Iterable[str]) -> Guide | None:
+        """What it is guided by, or None where there are no phrases."""
+        from polaris_nl.speech.guided import Guide
+
+        model = WordModel(phrases)
+        return Guide(model, self._pieces, self._decoder.pieces) if model.words else None
+
+    def guided(self, listening: Listening, guide: Guide, seconds: float) -> list[str]:
         """What may have been said in words of the phrases, the likeliest first."""
         from polaris_nl.speech.guided import guided
 
-        if not model.words:
-            return []
-        return guided(listening, self._prompt(), self._pieces, model, seconds)
+        return guided(listening, self._prompt(), guide, seconds)
 
     def likelihoods(self, listening: Listening, texts: Sequence[str]) -> list[float]:
         """The natural logarithm of the likelihood of words, given the sound."""

@@ -5,9 +5,11 @@ from __future__ import annotations
 import math
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping
+from functools import lru_cache
 
 START, END = "<s>", "</s>"
 ORDER = 3
+_REMEMBERED = 20_000
 _NEVER = 1e-6
 """How likely a word is that no phrase has."""
 
@@ -37,17 +39,14 @@ class WordModel:
             {before: (sum(found.values()), len(found)) for before, found in table.items()}
             for table in followers
         ]
-        self._known: dict[tuple[str, tuple[str, ...]], float] = {}
+        self._likely = lru_cache(_REMEMBERED)(self._found)
         self.words = frozenset(followers[0].get((), {})) - {END}
         self.beginnings = frozenset(w[:size] for w in self.words for size in range(len(w) + 1))
         """What words begin with, and the words."""
 
     def log_probability(self, word: str, before: tuple[str, ...]) -> float:
         """The natural logarithm of how likely a word (or END) is behind others, the first of them START."""
-        before = before[-(ORDER - 1) :]
-        if (word, before) not in self._known:
-            self._known[word, before] = self._found(word, before)
-        return self._known[word, before]
+        return self._likely(word, before[-(ORDER - 1) :])
 
     def _found(self, word: str, before: tuple[str, ...]) -> float:
         total, _ = self._counts[0].get((), (1.0, 0))
