@@ -39,5 +39,5 @@ class Ahead:
 
     def _heard(self, sound: bytes) -> Opinion:
         opinion = self._inner.opinion(sound)
-        _ = opinion.texts  # An opinion is formed when it is asked for.
+        _ = opinion.likelihoods(opinion.texts)  # An opinion is formed when it is asked for.
         return opinion

@@ -8,7 +8,7 @@ what both find likely is hardly wrong.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cache, cached_property
 from importlib.util import find_spec
 from pathlib import Path
@@ -102,16 +102,22 @@ class WhisperOpinion:
     def texts(self) -> Sequence[str]:
         """What it may have been, as Vosk would write it: what was heard freely before what was guided."""
         free = filter(None, map(plain, self._whisper.heard(self._encoded, self._names)))
-        guided = (
-            self._whisper.guided(self._listening, self._guide, self._seconds)
-            if self._guide is not None
-            else ()
-        )
+        if self._guide is None:
+            return tuple(dict.fromkeys(free))
+        guided = self._whisper.guided(self._listening, self._guide, self._seconds)
         return tuple(dict.fromkeys((*free, *guided)))
 
     def likelihoods(self, texts: Sequence[str]) -> Sequence[float]:
         """The natural logarithm of the likelihood of any words, given the sound and nothing else."""
-        return self._whisper.likelihoods(self._listening, texts)
+        others = [text for text in texts if text not in self._own]
+        found = dict(zip(others, self._whisper.likelihoods(self._listening, others), strict=True))
+        return [found[text] if text in found else self._own[text] for text in texts]
+
+    @cached_property
+    def _own(self) -> Mapping[str, float]:
+        """The likelihoods of its own texts, which can be known before others are asked about."""
+        found = self._whisper.likelihoods(self._listening, self.texts)
+        return dict(zip(self.texts, found, strict=True))
 
     @cached_property
     def _listening(self) -> Listening:

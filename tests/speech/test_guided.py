@@ -9,9 +9,11 @@ import numpy
 import pytest
 
 from polaris_nl.model.errors import SpeechError
+from polaris_nl.speech.guided import Guide, Pieces
 from polaris_nl.speech.whisper_decoder import WhisperDecoder
 from polaris_nl.speech.whisper_recogniser import WhisperRecogniser
 from polaris_nl.speech.whisper_weights import read_weights
+from polaris_nl.speech.word_model import WordModel
 from tests.speech.speaking import blocks_of, in_noise, spoken
 
 CUP = "move the cup to the desk"
@@ -108,6 +110,22 @@ def test_few_phrases_are_not_heard_over_and_over() -> None:
     found = WhisperRecogniser(phrases=[CUP]).opinion(sound).texts
     assert found[0] == CUP
     assert max(len(text.split()) for text in found) < 3 * len(CUP.split())
+
+
+def test_a_guide_has_the_pieces_of_its_words_and_the_commonest_others() -> None:
+    letters = ["b", "ring", "cup", None, "", "og", "zebra"]
+    pieces = Pieces(letters, [True, False, True, False, False, False, True], end=len(letters))
+    weights = numpy.arange(2.0 * (len(letters) + 1)).reshape(-1, 2)
+    guide = Guide(WordModel(["bring cup"]), pieces, weights)
+    assert guide.numbers == (
+        0,
+        1,
+        2,
+        4,
+        7,
+    )  # "og" is in no word, "cup" begins one, a sign may always stand
+    assert guide.letters == ["b", "ring", "cup", "", ""]
+    assert (guide.weights == weights[[0, 1, 2, 4, 7, 3, 5, 6]]).all()
 
 
 @pytest.mark.parametrize("content", [b"", b"not a model at all", b"\6\0\0\0\4\0Abc\0"])

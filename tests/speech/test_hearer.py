@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 
 import pytest
 
+from polaris_nl.speech.ahead import Ahead
 from polaris_nl.speech.audio import level
 from polaris_nl.speech.ears import EarMaker, Ears
 from polaris_nl.speech.hearer import Heard, Hearer, Quick, Started
 from polaris_nl.speech.wake import MicroWakeWord
 from polaris_nl.speech.weight import Weight
-from tests.speech.speaking import blocks_of, silence, spoken
+from tests.speech.speaking import blocks_of, in_noise, silence, spoken
 
 PHRASES = (
     "stop", "pause", "go home", "undo that", "bring the cup to the table", "bring the cup", "then go home",
@@ -33,6 +35,16 @@ WHOLE = {
 @pytest.fixture(scope="module")
 def ears() -> Ears:
     return EarMaker().ears(PHRASES)
+
+
+class Expecting(Ahead):
+    """Notes what it is to begin with."""
+
+    def __init__(self, expected: list[bytes]) -> None:
+        self._expected = expected
+
+    def begin(self, sound: bytes) -> None:
+        self._expected.append(sound)
 
 
 def weigh(text: str) -> Weight | None:
@@ -82,6 +94,30 @@ def test_a_pause_in_the_middle_of_a_sentence_does_not_cut_it(ears: Ears) -> None
         if isinstance(h, Heard)
     ]  # fmt: skip
     assert [h.spoken.alternatives[0] for h in heard] == ["bring the cup to the table"]
+
+
+def test_what_is_heard_does_not_depend_on_how_long_was_waited(ears: Ears) -> None:
+    found = []
+    for weight in (Weight.CHANGING, Weight.ASKING, None):
+        hearer = Hearer(ears, lambda text, weight=weight: weight)  # type: ignore[misc]
+        *_, heard = happen(hearer, said("bring the cup to the table"))
+        assert isinstance(heard, Heard)
+        found.append(heard)
+    assert len({h.pause_s for h in found}) == 3
+    assert len({h.spoken for h in found}) == 1
+
+
+def test_a_piece_can_be_heard_again_before_it_has_ended(ears: Ears) -> None:
+    expected: list[bytes] = []
+    eager = replace(ears, second=Expecting(expected))
+    hearer, heard = Hearer(eager, weigh), None
+    noisy = blocks_of(in_noise(b"".join(said("go home", 0)), 5))
+    for block in [*silence(0.6), *noisy, *silence(2)]:
+        for happening in hearer.push(block, True):
+            if isinstance(happening, Heard):
+                heard = happening
+                assert expected[-1] == heard.spoken.audio
+    assert heard is not None
 
 
 @pytest.mark.parametrize("word", ["stop", "pause"])
