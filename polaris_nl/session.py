@@ -19,27 +19,18 @@ from polaris_nl.answers import STILL_PLANNING, answer_query, change_in_words, ru
 from polaris_nl.answers.about_goals import possible_in_words, problem_of, with_goals
 from polaris_nl.answers.contrast import CONTRASTS, answer_contrast
 from polaris_nl.automaton.automaton import Automaton
-from polaris_nl.automaton.edit_json import edit_json
 from polaris_nl.automaton.edits import Edit, ReplaceProgram
 from polaris_nl.automaton.history import History
-from polaris_nl.automaton.program import Program, program_json, read_program, write_program
-from polaris_nl.execution.events import (
-    Edited,
-    Event,
-    Failed,
-    Heard,
-    Interpreted,
-    Planned,
-    Understood,
-)
-from polaris_nl.language.interpretation import Command, Interpretation, Query, Reading, Refusal
+from polaris_nl.automaton.program import Program, read_program, write_program
+from polaris_nl.execution.events import Event, Heard
+from polaris_nl.language.interpretation import Command, Interpretation, Query, Refusal
 from polaris_nl.model.errors import FileError, PolarisError
 from polaris_nl.model.wording import Wording
 from polaris_nl.model.world import World
-from polaris_nl.past import Past
 from polaris_nl.publishing import Publisher, Subscriber
 from polaris_nl.replanning import Published, Replanner
-from polaris_nl.snapshot import Answer, Planning, Snapshot, answer_json
+from polaris_nl.reporting import Reporter
+from polaris_nl.snapshot import Answer, Planning, Snapshot
 
 if TYPE_CHECKING:
     from polaris_nl.language.dialogue import Dialogue
@@ -72,9 +63,7 @@ class Session:
         self.world = world
         self.path = path
         self.running = False  # A face says so while it carries the program out.
-        self._sink = sink or (lambda event: None)
-        self._past = Past()
-        self._now = now
+        self._reporter = Reporter(sink, now)
         self._history = History(automaton or Automaton())
         self._dialogue: Dialogue | None = None
         self._run_echoed = False
@@ -144,10 +133,10 @@ class Session:
             heard: how it was heard, for the log, where it was spoken.
         """
         started = time.perf_counter()
-        self._report(heard or Heard(time=self._now(), utterance=utterance, source=source))
+        self._reporter.heard(utterance, source, heard)
         interpretation, dialogue = self._interpret(utterance)
         self._dialogue = dialogue
-        self._report_interpreted(interpretation)
+        self._reporter.interpreted(interpretation)
         failure, confirmed = "", False
         was_echoed, self._run_echoed = self._run_echoed, False
         if was_echoed and interpretation.command == "run" and interpretation.agrees:
@@ -166,7 +155,7 @@ class Session:
             self._last_say = text
         ms = (time.perf_counter() - started) * 1000
         answer = Answer(interpretation, text, snapshot, confirmed, failure, ms)
-        self._report_understood(answer)
+        self._reporter.understood(answer, self.program_of(answer.snapshot.automaton))
         return answer
 
     def understood(self, utterance: str) -> Interpretation:
@@ -214,11 +203,11 @@ class Session:
     @property
     def past(self) -> tuple[Event, ...]:
         """What was heard, understood and changed so far, for the log of a run that follows from it."""
-        return self._past.events()
+        return self._reporter.past
 
     def report_to(self, sink: Callable[[Event], None]) -> None:
         """Reports everything that happens from now on to another sink."""
-        self._sink = sink
+        self._reporter.sink = sink
 
     def warm_up(self) -> None:
         """Loads language and planner, so that the first sentence is answered as quickly as the second."""
@@ -386,7 +375,7 @@ class Session:
         try:
             write_program(self.program, self.path)
         except FileError as error:
-            self._report(Failed(time=self._now(), text=str(error), what="save"))
+            self._reporter.failed(str(error), "save")
             return str(error)
         return ""
 
@@ -399,16 +388,7 @@ class Session:
             undoable=tuple(step.label for step in self._history.past),
             redoable=tuple(step.label for step, _ in self._history.future),
         )
-        self._report(
-            Edited(
-                time=self._now(),
-                text=label,
-                revision=snapshot.revision,
-                label=label,
-                edits=[edit_json(e) for e in edits],
-                program=program_json(self.program),
-            )
-        )
+        self._reporter.edited(label, snapshot.revision, edits, self.program)
         self._publisher.tell()
         self._replanner.request(snapshot.revision, snapshot.automaton)
 
@@ -424,62 +404,8 @@ class Session:
         if snapshot is None:
             return
         if news.whole:
-            self._report_planned(snapshot)
+            self._reporter.planned(snapshot)
         self._publisher.tell()
-
-    # Events
-
-    def _report(self, event: Event) -> None:
-        self._past.add(event)
-        self._sink(event)
-
-    def _report_planned(self, snapshot: Snapshot) -> None:
-        if snapshot.plan is None:
-            self._report(Failed(time=self._now(), text=snapshot.failure, what="planning"))
-            return
-        from polaris_nl.planning.plan_json import plan_json
-
-        plan = snapshot.plan
-        self._report(
-            Planned(
-                time=self._now(),
-                revision=snapshot.revision,
-                status=plan.status,
-                plan=plan_json(plan, snapshot.automaton),
-                ms=plan.ms,
-            )
-        )
-
-    def _report_interpreted(self, interpretation: Interpretation) -> None:
-        # Readings that differ in how they came about alone are no rivals.
-        readings: dict[tuple[str, tuple[str, ...]], Reading] = {}
-        for reading in interpretation.readings:
-            readings.setdefault((reading.text, reading.why), reading)
-        self._report(
-            Interpreted(
-                time=self._now(),
-                utterance=interpretation.utterance,
-                outcome=interpretation.outcome,
-                readings=[
-                    {"text": r.text, "score": r.score, "why": list(r.why)}
-                    for r in readings.values()
-                ],
-            )
-        )
-
-    def _report_understood(self, answer: Answer) -> None:
-        value = answer_json(answer, self.program_of(answer.snapshot.automaton))
-        value.pop("program")
-        self._report(
-            Understood(
-                time=self._now(),
-                text=answer.say,
-                utterance=answer.interpretation.utterance,
-                outcome=answer.interpretation.outcome,
-                interpretation=value,
-                ms=answer.ms,
-            )
-        )
 
 
 def _refused(interpretation: Interpretation, reason: str) -> Interpretation:

@@ -6,6 +6,7 @@ import queue
 import subprocess
 import threading
 from contextlib import suppress
+from itertools import groupby
 from pathlib import Path
 from typing import Any
 
@@ -39,7 +40,9 @@ def test_subscribers_get_every_revision_first_planning_then_planned(session: Wat
         session.until_told(n)
     session.undo()
     session.until_told(3)
-    assert [(s.revision, s.planning) for s in session.told] == [
+    # Parts of a plan may come before all of it, and a better one after it: on a slow machine they do.
+    states = [state for state, _ in groupby((s.revision, s.planning) for s in session.told)]
+    assert states == [
         (1, "planning"),
         (1, "planned"),
         (2, "planning"),
@@ -48,7 +51,8 @@ def test_subscribers_get_every_revision_first_planning_then_planned(session: Wat
         (3, "planned"),
     ]
     # Until the new plan is there, the old one is shown.
-    assert session.told[2].plan is session.told[1].plan
+    latest = next(s for s in reversed(session.told) if s.revision == 1)
+    assert next(s for s in session.told if s.revision == 2).plan is latest.plan
 
 
 def test_a_subscription_ends(session: Watched) -> None:
