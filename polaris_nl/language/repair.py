@@ -14,7 +14,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from polaris_nl.language.common import Common
 from polaris_nl.language.mention import Mention
 from polaris_nl.language.tokens import BREAK, COMMA, PhraseSet
-from polaris_nl.language.verbs import Verbs
+from polaris_nl.language.verbs import Verbs, gerund
 
 BACK = 10
 """Words that a repair can take back at most."""
@@ -198,12 +198,16 @@ class Repairs:
             before, rest = list(tokens[:at]), list(tokens[at + 1 :])
             if tokens[at] != _NO or _MORE & set(rest) or BREAK in tokens:
                 continue
-            starts = (i for i in range(len(before)) if not i or before[i - 1] in self._starts)
+            # A condition may stand before the verb: "if she's there open the fridge no open the drawer".
+            verb = rest[0] in self._verbs.bases(gerund(rest[0]), "gerund")
+            starts = (
+                i for i in range(len(before)) if verb or not i or before[i - 1] in self._starts
+            )
             start = max((i for i in starts if before[i] == rest[0]), default=None)
             if start is not None and not _WAITS & set(before[start:]):
                 if any(m.end == len(tokens) for there in mentions[at + 2 : at + 3] for m in there):
                     # Nothing but somebody else is named: "tell Ann that ..., no, tell Bob".
-                    yield from self._replaced(before, rest[1:], at + 2, mentions)
+                    yield from self._replaced(before, rest[1:], at + 2, mentions, start)
                 yield [*before[:start], *rest]
 
     def _named_again(
@@ -239,11 +243,12 @@ class Repairs:
         rest: list[str],
         restart: int,
         mentions: Sequence[Sequence[Mention]],
+        first: int = 0,
     ) -> Iterator[list[str]]:
         """A thing takes the place of the latest of its type: "the cup to the desk, no, the plate"."""
         for new in mentions[restart] if restart < len(mentions) else ():
             size = new.end - new.start
-            for at in range(len(before) - 1, -1, -1):
+            for at in range(len(before) - 1, first - 1, -1):
                 for old in mentions[at] if at < len(mentions) else ():
                     if old.end <= len(before) and self._kinds(old) & self._kinds(new):
                         yield [*before[:at], *rest[:size], *before[old.end :], *rest[size:]]

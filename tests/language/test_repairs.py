@@ -25,6 +25,21 @@ from .test_requests import understanding
             "tell tom bingo is starting no tell miss green",
             "start [(alerted-to resident bingo)]",
         ),
+        (
+            "care-home",
+            "if she is in the kitchen open the fridge no open the cupboard",
+            "start [when (person-in resident kitchen): (open cupboard)]",
+        ),
+        (
+            "care-home",
+            "if the fridge is open close it no close the cupboard",
+            "start [when (open fridge): (not (open cupboard))]",
+        ),
+        (
+            "care-home",
+            "when the tray is full bring it to mr brown no bring it to the resident",
+            "start [when (is-full tray): (has resident tray)]",
+        ),
         # What comes on top takes nothing back, nor does a "no" that somebody else says.
         (
             "dinner-party",
