@@ -222,7 +222,9 @@ class Fragments:
             verb = person.end
             if verb >= len(tokens) or tokens[verb] not in self._telling:
                 continue
-            if not self._clauses.fits(person, ("person", "message")):
+            # "That has gone ..." may be about anything.
+            told_of = ("person",) if person.pronoun else ("person", "message")
+            if not self._clauses.fits(person, told_of):
                 continue
             for end in range(verb + 1, min(verb + _TOLD_WORDS, len(tokens)) + 1):
                 if tokens[end - 1] in (BREAK, COMMA) or tokens[end - 1] in _NO_REMARK:

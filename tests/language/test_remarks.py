@@ -49,6 +49,8 @@ def test_remarks_behind_a_request_are_passed_over(said: str) -> None:
         "put the cup on the desk he is asleep ring up the doctor",
         "put the cup on the desk she is waiting the plate on the table",
         "put the cup on the desk she is waiting the book to tom",
+        "that has gone delete the part where you go home",
+        "that has gone to leak the park there you go home",
     ],
 )
 def test_what_asks_for_more_is_no_remark(said: str) -> None:
