@@ -23,7 +23,7 @@ from polaris_nl.speech.readings import Found, gain_of, placed, readings
 from polaris_nl.speech.recogniser import Opinion, Spoken
 from polaris_nl.speech.weight import Weigh, Weight
 
-QUIET_DB = 18.0
+QUIET_DB = 20.0
 """What stands out less of its background was said in noise."""
 RATED, ALIKE = 12, 2
 """Readings that are understood, and how many of them may mean the same: each takes a hundredth of a second."""
@@ -34,6 +34,8 @@ FAR = 8.0
 BROKEN_OFF = 0.5
 """Less than this, a word, is what it costs to go on in the middle of what was said; behind its end it costs far
 more. The second recogniser ends early too often for the likelihood of an end to show that."""
+LEFT_OUT = 0.65
+"""What has fewer of the letters that both recognisers heard freely leaves something out."""
 PARTLY = 6.0
 """By how much less likely a reading is held that makes sense only in part."""
 LEAST, MARGIN = -1.5, 1.0
@@ -121,10 +123,11 @@ def heard_again(
         rivals = [r for r in rated if r.sensible and r.means != best.means]
         margin = best.score - max((r.score for r in rivals), default=-math.inf)
         near = [r.found.text for r in rivals if best.score - r.score < _margin(best, r)]
+        contested = bool(near) or _leaves_out(best, piece, opinion)
         refused = not (first.accepted or first.doubts)
         if refused and not best.heard and _is_foreign(best, piece):
             return first
-        verdict = _verdict(best, margin, bool(near), opinion, refused)
+        verdict = _verdict(best, margin, contested, opinion, refused)
         if verdict == "unlikely":
             return first if first.doubts else _left_alone(first, best)
         if verdict == "no witness":
@@ -155,6 +158,16 @@ def _is_foreign(best: _Rated, piece: Spoken) -> bool:
     return bool(piece.gains) and piece.gains[0] < words * least_gain(best.found.weight, words)
 
 
+def _leaves_out(best: _Rated, piece: Spoken, opinion: Opinion) -> bool:
+    """Whether both recognisers heard far more when they heard freely: "... and then go home" may be lost."""
+    heard = min(map(_letters, (piece.free, opinion.texts[0])))
+    return _letters(best.found.reading) < LEFT_OUT * heard
+
+
+def _letters(text: str) -> int:
+    return len(text.replace(" ", ""))
+
+
 _Verdict = OneOf["certain", "doubtful", "unlikely", "no witness"]
 
 
@@ -175,7 +188,7 @@ def _verdict(
     Args:
         best: the reading.
         margin: by how much it is likelier than all that means something else.
-        contested: whether that is too little beside one of them.
+        contested: whether that is too little beside one of them, or much of what was said may be missing.
         opinion: what the second one heard.
         refused: whether the first one would have left the words alone.
     """

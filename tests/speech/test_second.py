@@ -144,6 +144,24 @@ def test_what_breaks_off_in_the_middle_is_no_reading(likely: float, heard: str) 
     assert (said.text, said.accepted, said.doubts) == (heard, True, ())
 
 
+@pytest.mark.parametrize(
+    ("own", "free", "accepted"),
+    [
+        (
+            "remove the cup to the desk and then you all go home",
+            "the cup and the hall may now go home",
+            False,
+        ),
+        ("remove the cup to the desk and then you all go home", "the cup on the deck", True),
+        ("remove the cup to the desk", "the cup and the hall may now go home", True),
+    ],
+)
+def test_where_both_heard_far_more_it_is_asked_about(own: str, free: str, accepted: bool) -> None:
+    said = both(Heard((own,), {own: -3.0, CUP: -4.0}), CUP, free=free)
+    assert (said.text, said.accepted) == (CUP, accepted)
+    assert said.doubts == (() if accepted else (CUP,))
+
+
 def test_what_only_the_second_heard_must_be_explained_by_the_phrases_of_the_first() -> None:
     opinion = Heard((CUP,), {CUP: -2.0})
     assert both(opinion, "more of the cop", gains=[-5.0]).accepted
