@@ -149,11 +149,11 @@ def test_what_breaks_off_in_the_middle_is_no_reading(likely: float, heard: str) 
     [
         (
             "remove the cup to the desk and then you all go home",
-            "the cup and the hall may now go home",
+            "the cup on the deck and then we all may go home",
             False,
         ),
         ("remove the cup to the desk and then you all go home", "the cup on the deck", True),
-        ("remove the cup to the desk", "the cup and the hall may now go home", True),
+        ("remove the cup to the desk", "the cup on the deck and then we all may go home", True),
     ],
 )
 def test_where_both_heard_far_more_it_is_asked_about(own: str, free: str, accepted: bool) -> None:
