@@ -53,14 +53,12 @@ class Ears:
         """Which of the world's words are listened for under other words, and which can't be heard."""
         return self.ways.alikes
 
-    def expect(self, audio: bytes, alike: bool) -> None:
-        """A piece of speech may have ended: if it will probably be heard again, that begins now.
+    def expect(self, audio: bytes) -> None:
+        """A piece of speech may have ended: if it will be heard again, that begins now.
 
-        Args:
-            audio: the piece.
-            alike: whether the first recogniser's decoders hear the same so far.
+        In noise it always will be. Elsewhere it rarely is, and would only be in the first recogniser's way.
         """
-        if self.second is not None and (not alike or in_noise(audio)):
+        if self.second is not None and in_noise(audio):
             self.second.begin(audio)
 
     def utterance(

@@ -171,7 +171,7 @@ class Hearer:
             found.append(self._ears.free.partial())
         # Last words are the least certain: whichever decoder has them right counts.
         self._pause_s = min(_ending(t.split(), self._weigh(t) if t else None) for t in found)
-        self._ears.expect(bytes(self._audio), alike=len(set(found)) == 1)
+        self._ears.expect(bytes(self._audio))
 
     def _ended(self, pause_s: float) -> Iterator[Heard]:
         ended = self._clock()
