@@ -234,7 +234,8 @@ class Changes:
         if match.intent == "before-that" and this == START:
             raise Misfit("")
         new = self._new(first.goals, first.when, program)
-        words = steps_in_words([Step(first.goals), *rest], self._language.wording)
+        said = (goals_in_words(step.goals, self._language.wording) for step in (first, *rest))
+        words = ", then ".join(said)
         if match.intent == "between" and other is not None:
             edits = put_between(program, new, this, other)
             say = f"between the steps {name} and {program.checkpoints[other].name}, {words}"

@@ -167,3 +167,11 @@ def test_steps_put_between_others_keep_their_order(edit: str) -> None:
     )
     assert opened < put < home
     assert program.count("-[]->") == 3
+
+
+def test_steps_put_in_front_are_said_back_in_their_order() -> None:
+    with Session(world_of("care-home")) as session:
+        session.say("Go home.", wait_s=0)
+        before = "Before anything else, open the fridge, then put the cup in it."
+        said = session.say(before, wait_s=0).interpretation.say
+        assert said == "First, open the fridge, then put the cup in the fridge."
