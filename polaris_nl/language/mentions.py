@@ -66,7 +66,7 @@ class MentionFinder:
                     yield replace(listed, start=start, quantifier="none", alternative=False)
         if start < len(tokens) and tokens[start] == "both":
             for listed in self._all(tokens, start + 1):
-                if listed.parts and not listed.alternative:
+                if listed.parts and not (listed.alternative or listed.parts[0].plural):
                     yield replace(listed, start=start)
         for single in self._single(tokens, start):
             placed = list(self._placed(tokens, single))
@@ -95,8 +95,9 @@ class MentionFinder:
 
     def _listed(self, tokens: Sequence[str], first: Mention) -> Iterator[Mention]:
         """`a, b and c`; `a or b`; each prefix that ends in a joined one."""
-        if first.text == "one" or (first.quantifier or first.pronoun) == "both":
-            return  # "In room one and the cup ..."; "both" stands before a list.
+        stands_before = (first.quantifier or first.pronoun) == "both" and not first.plural
+        if first.text == "one" or stands_before:
+            return  # "In room one and the cup ..."; "both the cup and the plate".
         parts, at, joined, alternative = [first], first.end, False, False
         while at < len(tokens) and len(parts) < 12:
             step = at + 1 if tokens[at] == COMMA else at
