@@ -17,6 +17,7 @@ from polaris_nl.automaton.edits import (
 from polaris_nl.language.afterthoughts import limited, narrowed, spared, step_about
 from polaris_nl.language.conditions import condition_in
 from polaris_nl.language.dialogue import Dialogue, Latest
+from polaris_nl.language.edited_steps import NOT_START, going_on, latest_step, pair
 from polaris_nl.language.generate import goals_in_words, steps_in_words
 from polaris_nl.language.interpretation import Interpretation
 from polaris_nl.language.mention import Mention
@@ -99,7 +100,7 @@ class Changes:
             if changed == program:
                 return Interpretation(utterance, "answer", NOTHING_CHANGES), dialogue
             kept = tuple(t for t in touched if t in changed.checkpoints)
-            here = _going_on(kept, program, changed, dialogue)
+            here = going_on(kept, program, changed, dialogue)
             spans = {name: (found.start, found.end) for name, found in match.references.items()}
             latest = Latest(
                 tuple(match.tokens),
@@ -144,7 +145,7 @@ class Changes:
         for slot, other in (("x", "k"), ("y", "l")):
             if slot in slots and intent != "together":
                 named[other] = self._about(slots[slot], (), program, dialogue)
-        latest = _latest(program, dialogue)
+        latest = latest_step(program, dialogue)
         if intent in ("limit", "spare"):
             return self._limited(match, latest, program, dialogue)
         if intent == "remove-latest":
@@ -152,8 +153,8 @@ class Changes:
         if intent in ("at-start", "before-that"):
             return self._put(match, START if intent == "at-start" else latest, program, dialogue)
         this = named.get("k", latest)
-        if this == START and intent in _NOT_START:
-            raise EditError(_NOT_START[intent])
+        if this == START and intent in NOT_START:
+            raise EditError(NOT_START[intent])
         name = program.checkpoints[this].name
         if intent == "remove":
             return several_removed(program, [named[slot] for slot in ("k", "l") if slot in named])
@@ -164,7 +165,7 @@ class Changes:
         if intent == "split":
             return split(program, this, self._language.names)
         if intent in _TOGETHER:
-            return _TOGETHER[intent](program, *_pair(intent, named, latest, program))
+            return _TOGETHER[intent](program, *pair(intent, named, latest, program))
         if intent == "connect":
             return self._connected(match, this, named["l"], program, dialogue)
         if intent == "condition":
@@ -361,21 +362,6 @@ def _asks(item: Item) -> bool:
     return item.role in ("goal", "again") or item.mark == "nothing"
 
 
-_NOT_START = {
-    "remove": "The start can't be removed; it is where every program begins. Name another step.",
-    "rename": "The start can't be renamed; it is where every program begins. Name another step.",
-    "move": "The start can't be moved; it is where every program begins. Name another step.",
-    "move-before": "The start can't be moved; it is where every program begins. Name another step.",
-    "split": "The start has no goals; name another step.",
-    "replace": "The start has no goals; say what comes after it.",
-    "also": "The start has no goals; say what comes after it.",
-    "remove-rest": 'The start can\'t be removed; say "start over" for an empty program.',
-    "merge": "The start has no goals; name another step.",
-    "swap": "Nothing can come before the start; name another step.",
-    "else": "The start can't be a branch; name another step.",
-    "condition": "The start waits for nothing; name another step.",
-    "unconditional": "The start waits for nothing; name another step.",
-}
 _ALONE: Mapping[str, Callable[[Automaton, str], Reshaped]] = {
     "cut-after": cut_after,
     "remove-rest": removed_with_rest,
@@ -396,49 +382,6 @@ def _renamed(match: Match, program: Automaton, this: str) -> Reshaped:
     wanted = " ".join(match.tokens[span[0] : span[1]])
     name = program.checkpoints[this].name
     return [RenameCheckpoint(this, wanted)], f"{name} is called {wanted} now", [this]
-
-
-def _pair(
-    intent: str, named: Mapping[str, str], latest: str, program: Automaton
-) -> tuple[str, str]:
-    """The two checkpoints of an edit; one that isn't named is the latest, or what is beside it.
-
-    Raises:
-        EditError: there are not two.
-    """
-    this = named.get("k", latest)
-    if "l" in named:
-        return this, named["l"]
-    if intent == "move":
-        leaves = [c for c in program.leaves() if c != this]
-        other = leaves[-1] if leaves else None
-    elif intent == "move-before":
-        first = program.children(START)
-        other = first[0] if first else None
-        if other == this:
-            raise EditError(f"{program.checkpoints[this].name} is the first step already.")
-    else:
-        other = program.parent(this)
-    if other is None or START in (this, other):
-        raise EditError("There are not two steps for that; name them.")
-    return this, other
-
-
-def _latest(program: Automaton, dialogue: Dialogue) -> str:
-    """The checkpoint that was changed last."""
-    touched = [c for c in dialogue.touched if c in program.checkpoints]
-    here = dialogue.here if dialogue.here in program.checkpoints else None
-    return touched[-1] if touched else here or list(program.checkpoints)[-1]
-
-
-def _going_on(
-    touched: Sequence[str], program: Automaton, changed: Automaton, dialogue: Dialogue
-) -> str | None:
-    """Where the next step goes: after a new step or a last one, else where it would have gone."""
-    latest = touched[-1] if touched else None
-    if latest is not None and (latest not in program.checkpoints or not changed.outgoing(latest)):
-        return latest
-    return dialogue.here if dialogue.here in changed.checkpoints else None
 
 
 def _plain(step: Step) -> bool:
