@@ -12,7 +12,7 @@ from polaris_nl.speech.audio import level
 from polaris_nl.speech.ears import EarMaker, Ears
 from polaris_nl.speech.hearer import Heard, Hearer, Quick, Started
 from polaris_nl.speech.wake import MicroWakeWord
-from polaris_nl.speech.weight import Weight
+from polaris_nl.speech.weight import Weigh, Weight
 from tests.speech.speaking import blocks_of, in_noise, silence, spoken
 
 PHRASES = (
@@ -51,6 +51,10 @@ def weigh(text: str) -> Weight | None:
     if text in PARTLY:
         return Weight.ASKING
     return Weight.CHANGING if text in WHOLE else None
+
+
+def always(weight: Weight | None) -> Weigh:
+    return lambda text: weight
 
 
 def happen(hearer: Hearer, blocks: Iterable[bytes], attentive: bool = True) -> list[object]:
@@ -99,8 +103,7 @@ def test_a_pause_in_the_middle_of_a_sentence_does_not_cut_it(ears: Ears) -> None
 def test_what_is_heard_does_not_depend_on_how_long_was_waited(ears: Ears) -> None:
     found = []
     for weight in (Weight.CHANGING, Weight.ASKING, None):
-        hearer = Hearer(ears, lambda text, weight=weight: weight)  # type: ignore[misc]
-        *_, heard = happen(hearer, said("bring the cup to the table"))
+        *_, heard = happen(Hearer(ears, always(weight)), said("bring the cup to the table"))
         assert isinstance(heard, Heard)
         found.append(heard)
     assert len({h.pause_s for h in found}) == 3
