@@ -195,8 +195,8 @@ class Repairs:
     ) -> Iterator[list[str]]:
         """The same verb after a "no" says the clause again: "open the fridge no open the drawer"."""
         for at in range(1, len(tokens) - 1):
-            before, rest = list(tokens[:at]), list(tokens[at + 1 :])
-            if tokens[at] != _NO or _MORE & set(rest) or BREAK in tokens:
+            before, rest = _bare_end(list(tokens[:at])), _bare_start(list(tokens[at + 1 :]))
+            if tokens[at] != _NO or not rest or _MORE & set(rest) or BREAK in tokens:
                 continue
             # A condition may stand before the verb: "if she's there open the fridge no open the drawer".
             verb = rest[0] in self._verbs.bases(gerund(rest[0]), "gerund")
@@ -205,9 +205,12 @@ class Repairs:
             )
             start = max((i for i in starts if before[i] == rest[0]), default=None)
             if start is not None and not _WAITS & set(before[start:]):
-                if any(m.end == len(tokens) for there in mentions[at + 2 : at + 3] for m in there):
+                behind = len(tokens) - len(rest) + 1
+                if any(
+                    m.end == len(tokens) for there in mentions[behind : behind + 1] for m in there
+                ):
                     # Nothing but somebody else is named: "tell Ann that ..., no, tell Bob".
-                    yield from self._replaced(before, rest[1:], at + 2, mentions, start)
+                    yield from self._replaced(before, rest[1:], behind, mentions, start)
                 yield [*before[:start], *rest]
 
     def _named_again(

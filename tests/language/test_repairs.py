@@ -40,6 +40,11 @@ from .test_requests import understanding
             "when the tray is full bring it to mr brown no bring it to the resident",
             "start [when (is-full tray): (has resident tray)]",
         ),
+        (
+            "care-home",
+            "if she is in the kitchen, open the fridge, no, open the cupboard",
+            "start [when (person-in resident kitchen): (open cupboard)]",
+        ),
         # What comes on top takes nothing back, nor does a "no" that somebody else says.
         (
             "dinner-party",
