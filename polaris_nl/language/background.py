@@ -21,8 +21,14 @@ _CORRECTING = frozenset(
     ("mean", "meant", "said", "wrong", "instead", "stop", "then", "not", "mind", "changed")
 )
 _MODALS = frozenset(("will", "not"))
+_BEING = frozenset(("is", "are", "was", "were", "'s"))
+"""Verbs that tell something also of what isn't known: "tv night is over so ..."."""
 _SO = "so"
 _FOR = "for"
+_OWNED = ("the", "our", "my", "his", "her", "their", "a", "an")
+_BEHIND = (BREAK, COMMA, "and", "then", "but", "please", "so", "if", "when", "once", "unless")
+"""Words that may follow whom something is for."""
+_MOST_FOR = 5
 _MOST_TOLD = 16
 _MOST_OCCASION = 7
 _LEAST_LATE = 3
@@ -58,6 +64,7 @@ class Background:
             yield from self._occasion(tokens, at, mentions, clauses)
         elif at:
             yield from self.told_behind(tokens, at, clauses)
+            yield from self._for_others(tokens, at, mentions)
 
     def remarks(self, tokens: Sequence[str]) -> Iterator[int]:
         """Where what may be told behind a request can begin."""
@@ -99,6 +106,19 @@ class Background:
             here += step
         return here == at
 
+    def asks(self, tokens: Sequence[str], at: int, clauses: Sequence[Sequence[Clause]]) -> bool:
+        """Whether something is asked for at a position, politely or not."""
+        while at < len(tokens):
+            if tokens[at] == "if" or any(c.kind in ("goal", "wish") for c in clauses[at]):
+                return True
+            step = 1 if tokens[at] == COMMA else self._leads.length_at(tokens, at)
+            if not step:
+                return False
+            at += step
+            if at < len(tokens) and any(c.kind in ("state", "small") for c in clauses[at]):
+                return True
+        return False
+
     def _told_before(
         self,
         tokens: Sequence[str],
@@ -112,13 +132,29 @@ class Background:
             subjects.append(at + 1)
         if any(c.kind == "goal" for c in clauses[at]):
             return
-        if not any(w in BE_OR_DO for end in subjects for w in tokens[end : end + 3]):
+        told = any(w in BE_OR_DO for end in subjects for w in tokens[end : end + 3])
+        if not told and not _BEING & set(tokens[at + 1 : at + 4]):
             return
         for end in range(at + 3, min(at + _MOST_TOLD, len(tokens) - 1) + 1):
             if tokens[end - 1] in _CONDITIONS or tokens[end - 1] in _CORRECTING - {"not"}:
                 return
-            if tokens[end] == _SO and self._asks(tokens, end + 1, clauses):
+            if tokens[end] == _SO and self.asks(tokens, end + 1, clauses):
                 yield at, end + 1
+                return  # What is asked for behind it isn't told any more.
+
+    def _for_others(
+        self, tokens: Sequence[str], at: int, mentions: Sequence[Sequence[Mention]]
+    ) -> Iterator[Span]:
+        """`... for the summer buffet`: what or whom something is for, where that is nothing known."""
+        if tokens[at] != _FOR or not {*tokens[at + 1 : at + 2]} & {*_OWNED}:
+            return
+        for end in range(at + 3, min(at + _MOST_FOR, len(tokens)) + 1):
+            last = tokens[end - 1]
+            begins = self._requests.may_begin(tokens, end - 1) and tokens[end - 2] not in _OWNED
+            if last in _CONDITIONS or any(m.candidates for m in mentions[end - 1]) or begins:
+                return
+            if last not in SMALL and (end == len(tokens) or tokens[end] in _BEHIND):
+                yield at, end
 
     def _occasion(
         self,
@@ -135,21 +171,8 @@ class Background:
             if last in _CONDITIONS or last in (BREAK, COMMA):
                 return
             named = any(m.end == end for there in mentions[at + 1 : end] for m in there)
-            if last not in SMALL and not named and self._asks(tokens, end, clauses):
+            if last not in SMALL and not named and self.asks(tokens, end, clauses):
                 yield at, end
-
-    def _asks(self, tokens: Sequence[str], at: int, clauses: Sequence[Sequence[Clause]]) -> bool:
-        """Whether something is asked for at a position, politely or not."""
-        while at < len(tokens):
-            if tokens[at] == "if" or any(c.kind in ("goal", "wish") for c in clauses[at]):
-                return True
-            step = 1 if tokens[at] == COMMA else self._leads.length_at(tokens, at)
-            if not step:
-                return False
-            at += step
-            if at < len(tokens) and any(c.kind in ("state", "small") for c in clauses[at]):
-                return True
-        return False
 
 
 def _leans(clause: Clause, first: str) -> bool:

@@ -9,7 +9,7 @@ from typing import Literal as OneOf
 from polaris_nl.language.grammar import Grammar
 from polaris_nl.language.mention import ASKED, EVERYTHING, SPEAKER, SPOKEN_OF, Mention
 from polaris_nl.language.mention_cost import MentionCost
-from polaris_nl.language.template import Parts, Slot, first_words, match
+from polaris_nl.language.template import NAMED, Parts, Slot, first_words, match
 from polaris_nl.language.verbs import INFLECTED, Inflection, Verbs
 from polaris_nl.model.world import World
 
@@ -73,6 +73,7 @@ class _Form:
     types: Mapping[str, tuple[str, ...]]
 
 
+_INSIDE = ("in", "there")
 Fitting = dict[tuple[int, tuple[str, ...]], Sequence[tuple[int, object]]]
 _WORDLESS: Mapping[tuple[str, ...], Mention] = {
     (EVERYTHING,): Mention(0, 0, EVERYTHING, quantifier="all"),
@@ -91,6 +92,8 @@ class ClauseFinder:
         self._cost = MentionCost(world)
         self._by_word: dict[str, list[_Form]] = {}
         self._anywhere: list[_Form] = []
+        common = grammar.common
+        self._determiners = {w[0] for w in common.determiners} | set(common.possessives)
         self.verbs = verbs_of(grammar)
         self.beginnings = _beginnings(grammar)
         for form in self._forms(grammar):
@@ -150,11 +153,14 @@ class ClauseFinder:
         for form in forms:
 
             def fillers(slot: Slot, at: int, form: _Form = form) -> Sequence[tuple[int, object]]:
-                types = (slot.type,) if slot.type else form.types.get(slot.name, ())
+                types = slot.types(form.types)
                 key = (at, types)
                 if key not in known:
                     known[key] = self._fitting(types, at, mentions)
-                return known[key]
+                if "surface" in types and (*tokens[max(at - 1, 0) : at + 1],) == _INSIDE:
+                    return ()  # Nothing is put in a table.
+                determined = slot.type == NAMED and self._determiners & {*tokens[at : at + 1]}
+                return () if determined else known[key]
 
             for end, bound in match(form.template, tokens, start, fillers):
                 if end > start:

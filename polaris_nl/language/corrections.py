@@ -155,6 +155,8 @@ class Corrections:
             return self._left_out(match, where, rest, program, dialogue)
         new, old = match.slots["x"], match.slots.get("y")
         assert isinstance(new, Mention)
+        if isinstance(old, Mention) and old.pronoun:
+            old = None  # "Not him": whoever of that kind was just spoken of.
         entities, everything = self._choosing.entities(new, old, where, program, dialogue)
         if old is None and set(entities) <= set(used_in(program, where)):
             return [], NOTHING_CHANGES

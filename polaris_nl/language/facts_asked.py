@@ -103,7 +103,13 @@ class FactsAsked:
         if not rest:
             return None
         mentions = self._language.mentions(rest)
-        ends = sorted({m.end for m in mentions[0]} | {1, 2}, key=lambda end: (end < 3, -end))
+        # "The door of the fridge" and "the fridge door" end behind, or within, what is named in them.
+        named = {m.end for there in mentions[:4] for m in there}
+        first = {m.end for m in mentions[0]}
+        ends = [
+            *sorted(first | {1, 2}, key=lambda end: (end < 3, -end)),
+            *sorted((named | {end + 1 for end in named}) - first - {1, 2}),
+        ]
         unclear: Unclear | None = None
         for at in ends:
             if at > len(rest) or (at == len(rest) and verb):

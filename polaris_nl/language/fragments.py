@@ -65,10 +65,37 @@ _LEADING = frozenset(
     ("otherwise", "else", "and", "then", "finally", "lastly", "next", "afterwards", "last")
 )
 """Words after which a bare name asks for the same with that."""
-_LEADING_PAIRS = (("after", "that"), ("after", "this"), ("of", "all"))
+_ENDS = (
+    BREAK,
+    COMMA,
+    "and",
+    "then",
+    "next",
+    "last",
+    "finally",
+    "lastly",
+    "after",
+    "at",
+    "followed",
+)
+"""Words that may follow a bare name."""
+_LEADING_PAIRS = (
+    ("after", "that"),
+    ("after", "this"),
+    ("after", "it"),
+    ("of", "all"),
+    ("followed", "by"),
+)
 _PRONOUNS = frozenset(
     {"it", "them", "they", "one", "ones", "these", "those", "that", "both", "him", "her", "there"}
 )
+_NEAR = 8
+"""Words within which a pronoun takes a topic up."""
+_ONWARD = frozenset(
+    ("then", "and", "but", "wait", "until", "till", "next", "finally", "afterwards")
+)
+"""Words behind what is wanted, and not behind what is only named: "plate on the table then wait until it's full"."""
+_JOINING = ("so", "and", "but")
 _SEVERAL = frozenset({"them", "they", "these", "those", "both", "there"})
 Mentions = Sequence[Sequence[Mention]]
 Clauses = Sequence[Sequence[Clause]]
@@ -169,10 +196,11 @@ class Fragments:
             if called and mention.candidates and self._clauses.fits(mention, ("person",)):
                 yield Fragment(mention.end, CALLED_COST, "topic", mention)
             if mention.candidates or mention.parts:
-                rest = tokens[mention.end : mention.end + 8]
-                if mention.quantifier == "all" and not _SEVERAL & set(rest):
+                rest = _pronouns(tokens, mention.end, mentions)
+                if mention.quantifier == "all" and not _SEVERAL & rest:
                     continue  # "Everything on the desk, put it there" is about more than one thing.
-                if mention.end < len(tokens) and _PRONOUNS & set(rest):
+                goes_on = tokens[mention.end : mention.end + 1]
+                if rest and not _ONWARD.intersection(goes_on):
                     yield Fragment(mention.end, TOPIC_COST, "topic", mention)
 
     def _contrasts(
@@ -237,6 +265,8 @@ class Fragments:
                     topic = Mention(at, end, " ".join(tokens[at:end]), parts=named)
                     cost = TELLING_COST + REASON_WORD_COST * (end - verb)
                     yield Fragment(end, cost, "topic", topic)
+                if tokens[end - 1] in _JOINING and self.background.asks(tokens, end, clauses):
+                    break  # What is asked for isn't told any more, and must not be lost.
 
     def _excuses(
         self, tokens: Sequence[str], at: int, mentions: Mentions, clauses: Clauses
@@ -264,13 +294,20 @@ class Fragments:
                 yield Fragment(end, TELLING_COST + REASON_WORD_COST * (end - at), "topic", told)
 
 
+def _pronouns(tokens: Sequence[str], at: int, mentions: Mentions) -> set[str]:
+    """The pronouns soon behind a position: "put it there", but not "her" in "her table"."""
+    near = range(at, min(at + _NEAR, len(tokens)))
+    owning = {i for i in near if any(m.candidates and m.end > i + 1 for m in mentions[i])}
+    return _PRONOUNS & {tokens[i] for i in near if i not in owning}
+
+
 def _same_with(tokens: Sequence[str], at: int, mentions: Mentions) -> Iterator[Fragment]:
     """`otherwise the juice`."""
     before = tuple(tokens[max(0, at - 3) : at])
     if not (before[-1:] and before[-1] in _LEADING) and before[-2:] not in _LEADING_PAIRS:
         return
     for mention in mentions[at]:
-        ends = mention.end == len(tokens) or tokens[mention.end] in (BREAK, COMMA, "and", "then")
+        ends = mention.end == len(tokens) or tokens[mention.end] in _ENDS
         if ends and mention.candidates:
             yield Fragment(mention.end, BARE_COST, "again", mention)
 

@@ -144,7 +144,7 @@ def _by_region(world: World) -> Iterator[tuple[tuple[str, ...], str]]:
         if fact.predicate != "located":
             continue
         thing, region = (world.entities[name] for name in fact.args)
-        for name in filter(None, (thing.spoken, thing.noun)):
+        for name in filter(None, (thing.spoken, thing.noun, *thing.synonyms)):
             for room in (region.spoken, *region.synonyms):
                 if not {*phrase(room)} & {*phrase(name)}:
                     yield (*phrase(room), *phrase(name)), thing.name

@@ -53,7 +53,7 @@ class _Entry:
         return f"{source.path.name}, line {source.line}" if source else "its name"
 
     def slot_types(self, slot: Slot) -> tuple[str, ...]:
-        return (slot.type,) if slot.type else self.types.get(slot.name, ())
+        return slot.types(self.types)
 
 
 _Key = tuple[str, ...]

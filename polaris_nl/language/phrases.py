@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from polaris_nl.language.grammar import Grammar
 from polaris_nl.language.predicate_phrases import Phrases
 from polaris_nl.language.said import Open
-from polaris_nl.language.template import Choice, Part, Parts, Slot, Word
+from polaris_nl.language.template import NAMED, Choice, Part, Parts, Slot, Word
 from polaris_nl.language.tokens import phrase
 from polaris_nl.model.domain import Predicate
 from polaris_nl.model.text import plural_of
@@ -86,7 +86,7 @@ class _Source:
 
     parts: Parts
     kind: str
-    types: Mapping[str, Sequence[str]] = field(default_factory=dict)
+    types: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     plain: bool = False
     drawn: int = 0
 
@@ -254,11 +254,9 @@ class _Maker:
         return max((self._width(p, source) for p in part.parts), default=1)
 
     def _slot(self, slot: Slot, source: _Source) -> list[tuple[str, ...]]:
-        kinds = (
-            (slot.type,)
-            if slot.type
-            else tuple(source.types.get(slot.name, ())) or tuple(self._names)
-        )
+        if slot.type == NAMED:
+            return [words for kind in slot.types(source.types) for words in self._names[kind]]
+        kinds = slot.types(source.types) or tuple(self._names)
         if kinds not in self._fillers:
             found: list[tuple[str, ...]] = []
             for kind in kinds:

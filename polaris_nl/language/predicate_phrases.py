@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 from polaris_nl.language.grammar_file import GrammarFile
 from polaris_nl.language.mention import WORDLESS
-from polaris_nl.language.template import Lists, Parts, Slot, Source
+from polaris_nl.language.template import NAMED, Lists, Parts, Slot, Source
 from polaris_nl.model.domain import Predicate
 from polaris_nl.model.errors import did_you_mean
 from polaris_nl.model.formula import Variable
@@ -65,7 +65,7 @@ def read_phrases(
     fields = file.fields(value, f"The predicate {name}", (*WORDINGS, *TEXTS, *ADJECTIVES))
 
     def slot_fault(slot: Slot) -> str:
-        if slot.type and slot.type not in (*types, *WORDLESS):
+        if slot.type and slot.type not in (*types, *WORDLESS, NAMED):
             return f"There is no type {slot.type}.{did_you_mean(slot.type, types)}"
         return (
             "" if slot.type else _unknown_slot(slot.name, f"predicate {name}", predicate.parameters)
@@ -104,7 +104,7 @@ def _variants(key: str, text: str) -> Iterator[tuple[str, str]]:
         return
     if BE in text:
         yield f"wished-{key}", text.replace(BE, "<shall-be>")
-        yield f"small-{key}", text.replace(BE, "[back|to be]")
+        yield f"small-{key}", text.replace(BE, "[both|all] [back|to be]")
         yield f"denied-{key}", text.replace(BE, "<not-be>")
         yield f"wished-denied-{key}", text.replace(BE, "<shall-not-be>")
     elif "~" in text and "!~" not in text:

@@ -23,6 +23,8 @@ _BUT_FIRST = "but"
 """Begins what is to come before the goals in front of it: "close it, but first put the cup in it"."""
 _SEQUELS = ("then", "and then", "after that", "and after that", "afterwards", "and afterwards")
 """Words in front of a condition that keep it where the program has come to."""
+_INSTEAD = "in which case"
+"""Behind "unless ...", says what is to be done then."""
 _GOING_ON = (*_SEQUELS[1:], "and finally", "and next", "finally", "after this")
 """Words after a condition that stands behind its goal: "bring it once she acknowledges, and then ..."."""
 
@@ -80,6 +82,7 @@ class _Reader:
         self._how_said = ""
         self._waits = False
         self._negate = False
+        self._instead = False
         self._unless: tuple[Literal, ...] = ()
         self._postposed = _all_postposed(self.items)
 
@@ -93,10 +96,15 @@ class _Reader:
         elif item.mark in ("before", "done"):
             self._ordered(item.mark)
         elif item.mark == "then" and item.text in _FIRST and self._at_an_end():
+            if self._but_before():
+                self.done.put_off()
             self.done.move_to_front()
         elif item.mark == "then" and item.text in _LATER and self._at_an_end():
             self.done.put_off()
+        elif item.mark == "then" and item.text.startswith(_INSTEAD) and self._leaves_out():
+            self._instead = True
         elif item.mark in ("then", "break"):
+            self._instead = False
             if item.mark == "break":
                 self.done.sentence = len(self.done.steps)
             if self.done.steps and not (self._how == "until" and self._when):
@@ -267,6 +275,15 @@ class _Reader:
             self.done.steps.append(Step(goals, done=True))
         self.done.new_step = not behind
 
+    def _but_before(self) -> bool:
+        """Whether "but" stands before the latest goal: "shut it, but put the cup in it first"."""
+        joined = [i for i in self.items[: self.at - 1] if i.mark in ("and", "comma")][-1:]
+        return any(i.text.startswith(_BUT_FIRST) for i in joined)
+
+    def _leaves_out(self) -> bool:
+        """Whether a step stands last that is left out where something holds: "unless she has it"."""
+        return len(self.done.steps) > 1 and self.done.steps[-1].role == "else"
+
     def _leaning(self) -> tuple[Goal, ...]:
         """Goals that lean on the one before: "before you've given her the book and him the glasses"."""
         goals: list[Goal] = []
@@ -287,7 +304,9 @@ class _Reader:
         rest = [i for i in self.items[self.at :] if i.mark != "comma"]
         if not rest or rest[0].mark in ("break", "else", "if", "until", "unless"):
             return True
-        goes_on = rest[0].mark == "then" and rest[0].text in _GOING_ON
+        goes_on = rest[0].mark == "then" and (
+            rest[0].text in _GOING_ON or rest[0].text.startswith(_INSTEAD)
+        )
         return goes_on or self._postposed
 
     def _attach(self, previous: Step, when: tuple[Literal, ...], mark: str) -> None:
@@ -351,6 +370,9 @@ class _Reader:
         elif self.done.otherwise:
             self.done.steps.append(Step(goals, (), "else"))
             self.done.otherwise = False
+        elif self._instead:
+            left_out = self.done.steps[-2]
+            self.done.steps[-2] = replace(left_out, goals=(*left_out.goals, *goals))
         elif self._when:
             self.done.steps.append(Step(goals, self._when, "condition", self._waits))
             self._when, self._how = (), ""

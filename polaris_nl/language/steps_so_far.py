@@ -129,6 +129,8 @@ class StepsSoFar:
         assert item.mention is not None
         before = self.steps[-1].goals if self.steps else self.latest
         goals, self.scope = self.resolver.instead(before, item.mention, self.scope)
+        if not goals and self.new_step:
+            goals = self._there(item.mention)
         if not goals:
             raise Misfit(f"The same for {item.mention.text}? Say what I should do with it.")
         if self.otherwise:
@@ -140,6 +142,13 @@ class StepsSoFar:
         else:
             self.steps.append(Step(goals))
         self.new_step = False
+
+    def _there(self, mention: Mention) -> tuple[Goal, ...]:
+        """Being at a place that is only named: "the cup to the counter, then the laundry room"."""
+        with suppress(Misfit, Unclear):
+            places = self.resolver.meant(mention, ("region",), self.scope).entities
+            return tuple(Literal("robot-at", (place,)) for place in places[:1])
+        return ()
 
     def leave_out(self, item: Item) -> None:
         """Leaves things out of the latest goals: "... all the cups to the desk except the red one".

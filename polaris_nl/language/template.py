@@ -17,6 +17,10 @@ from typing import Protocol, TypeVar
 from polaris_nl.language.tokens import phrase
 from polaris_nl.model.errors import GrammarError, did_you_mean
 
+NAMED = "named"
+"""The type of a slot that takes a name without "the" only, of whatever type its parameter has: "she's home",
+but not "she isn't the kitchen"."""
+
 _SYMBOL = re.compile(r"[()|\[\]]|\{[\w:-]*\}|<[\w-]*>|[{}<>]|[^\s()|\[\]{}<>]+")
 
 
@@ -33,6 +37,11 @@ class Slot:
 
     name: str
     type: str = ""
+
+    def types(self, parameters: Mapping[str, tuple[str, ...]]) -> tuple[str, ...]:
+        """The types of what can stand here, for the types of the predicate's parameters."""
+        own = self.type and self.type != NAMED
+        return (self.type,) if own else parameters.get(self.name, ())
 
 
 @dataclass(frozen=True, slots=True)
