@@ -48,7 +48,7 @@ def put_instead(
     if not old:
         return None
     try:
-        steps = changes.steps(words[:at], dialogue)
+        steps = changes.steps(_plain(words[:at]), dialogue)
     except Unclear:
         return None
     if len(steps) != 1 or steps[0].when or steps[0].forbidden or not steps[0].goals:
@@ -61,6 +61,14 @@ def put_instead(
             if edits:
                 return edits, f"{goals_in_words(wanted, language.wording)} instead"
     return None
+
+
+def _plain(words: Sequence[str]) -> list[str]:
+    """`it is the cup that goes there` as "the cup goes there"."""
+    joints = [i for i, word in enumerate(words) if word in ("that", "who")]
+    if tuple(words[:2]) in (("it", "is"), ("it", "was")) and joints:
+        return [*words[2 : joints[0]], *words[joints[0] + 1 :]]
+    return list(words)
 
 
 def _exchanged_only(

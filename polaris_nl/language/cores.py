@@ -39,6 +39,15 @@ class Core:
         return [t for t in self.tokens if t not in (COMMA, BREAK)]
 
 
+_NEED_NOT = (
+    ("you", "need", "not"),
+    ("you", "do", "not", "need", "to"),
+    ("you", "do", "not", "have", "to"),
+    ("there", "is", "no", "need", "to"),
+)
+"""What takes a request back as "do not" does."""
+
+
 class Cores:
     """Finds cores.
 
@@ -82,6 +91,9 @@ class Cores:
                 kept = strip(found, self._fillers)
                 changed = changed or kept != found
                 found = kept
+        for words in _NEED_NOT:
+            if tuple(found[: len(words)]) == words:
+                found = ["do", "not", *found[len(words) :]]
         return Core(tuple(found), strength)
 
 

@@ -48,6 +48,7 @@ _MORE = ("also", "too", "as well", "again")
 """Words of a sentence that adds to what was said, however it starts."""
 _NEVER = ("do", "not")
 _ONLY, _PLEASE = "only", "please"
+_PERSONS = ("me", "him", "her", "them", "us", "he", "she")
 _ON = ("and", "but", "then", "please")
 """Words between what isn't wanted and what is."""
 
@@ -155,7 +156,7 @@ class Corrections:
             return self._left_out(match, where, rest, program, dialogue)
         new, old = match.slots["x"], match.slots.get("y")
         assert isinstance(new, Mention)
-        if isinstance(old, Mention) and old.pronoun:
+        if isinstance(old, Mention) and old.pronoun in _PERSONS:
             old = None  # "Not him": whoever of that kind was just spoken of.
         entities, everything = self._choosing.entities(new, old, where, program, dialogue)
         if old is None and set(entities) <= set(used_in(program, where)):

@@ -94,7 +94,7 @@ _NEAR = 8
 _ONWARD = frozenset(
     ("then", "and", "but", "wait", "until", "till", "next", "finally", "afterwards")
 )
-"""Words behind what is wanted, and not behind what is only named: "plate on the table then wait until it's full"."""
+"""Words behind what is wanted, not behind what is only named: "plate on the table then wait till it's full"."""
 _JOINING = ("so", "and", "but")
 _SEVERAL = frozenset({"them", "they", "these", "those", "both", "there"})
 Mentions = Sequence[Sequence[Mention]]
@@ -294,7 +294,7 @@ class Fragments:
                 yield Fragment(end, TELLING_COST + REASON_WORD_COST * (end - at), "topic", told)
 
 
-def _pronouns(tokens: Sequence[str], at: int, mentions: Mentions) -> set[str]:
+def _pronouns(tokens: Sequence[str], at: int, mentions: Mentions) -> frozenset[str]:
     """The pronouns soon behind a position: "put it there", but not "her" in "her table"."""
     near = range(at, min(at + _NEAR, len(tokens)))
     owning = {i for i in near if any(m.candidates and m.end > i + 1 for m in mentions[i])}

@@ -69,6 +69,8 @@ class MentionFinder:
                 if listed.parts and not (listed.alternative or listed.parts[0].plural):
                     yield replace(listed, start=start)
         for single in self._single(tokens, start):
+            if tokens[start] == "no" and (tokens[start + 1],) in self._determiners:
+                continue  # "On the counter, no, the table" corrects; it isn't none of anything.
             placed = list(self._placed(tokens, single))
             for mention in (*placed, single):
                 yield from self._excepted(tokens, mention)

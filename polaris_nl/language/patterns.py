@@ -128,6 +128,8 @@ def strip(tokens: Sequence[str], fillers: Sequence[tuple[str, ...]]) -> list[str
             size = len(words)
             if len(found) > size and tuple(found[:size]) == words:
                 found, changed = found[size:], True
-            if len(found) > size and tuple(found[-size:]) == words:
+            # "For anna, not for me" says whom it isn't for.
+            denied = found[-size - 1 : -size] == ["not"]
+            if len(found) > size and tuple(found[-size:]) == words and not denied:
                 found, changed = found[:-size], True
     return found

@@ -25,6 +25,8 @@ _SEQUELS = ("then", "and then", "after that", "and after that", "afterwards", "a
 """Words in front of a condition that keep it where the program has come to."""
 _INSTEAD = "in which case"
 """Behind "unless ...", says what is to be done then."""
+_ENDING = ("finish", "end")
+"""Begins a step of its own: "... and finish by shutting it"."""
 _GOING_ON = (*_SEQUELS[1:], "and finally", "and next", "finally", "after this")
 """Words after a condition that stands behind its goal: "bring it once she acknowledges, and then ..."."""
 
@@ -120,6 +122,8 @@ class _Reader:
                     '"Otherwise" needs a condition before it: say "if ..., ... otherwise ...".'
                 )
             self.done.otherwise, self.done.new_step = True, True
+        elif item.mark == "polite" and item.text.split()[0] in _ENDING:
+            self.done.new_step = True
         elif item.mark == "not":
             self._negate = True
         elif item.mark == "nothing":

@@ -116,9 +116,15 @@ class StepsSoFar:
 
     def hear_named(self, mention: Mention) -> None:
         """What is only named can be meant by "it" afterwards."""
+        things: list[str] = []
         for named in (*mention.parts, mention):
             with suppress(Misfit, Unclear):
                 self.scope = self.scope.after(self.resolver.meant(named, (), self.scope).entities)
+                things.extend(self.resolver.meant(named, ("object",), self.scope).entities)
+        if len(things) > 1:
+            self.scope = self.scope.after(
+                tuple(dict.fromkeys(things))
+            )  # "Take both of them to her."
 
     def repeat_for(self, item: Item) -> None:
         """The goals of the step before, for another thing.
