@@ -211,11 +211,7 @@ class Session:
 
     def warm_up(self) -> None:
         """Loads language and planner, so that the first sentence is answered as quickly as the second."""
-        for said in (
-            "help",
-            "hlep",
-        ):  # The dictionary is loaded for the first word that isn't known.
-            self.understanding.interpret(said, self._publisher.snapshot.automaton)
+        self.understanding.warm_up()
         self._replanner.request(
             self._publisher.snapshot.revision, self._publisher.snapshot.automaton
         )

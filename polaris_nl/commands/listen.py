@@ -54,6 +54,7 @@ def run(arguments: Namespace) -> int:
         raise UsageError("--record keeps the sound in a log; name one with --log OUT.mcap.")
     with logged_session(arguments) as (session, log):
         ears = ears_for(session, maker, arguments.recogniser)
+        session.warm_up()
         face = _Face(session, arguments.json, _HOW[arguments.mode])
         for text in gaps_in_words(ears.alikes, spoken_names(session.understanding)):
             complain(text)

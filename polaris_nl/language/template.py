@@ -220,6 +220,12 @@ class _State:
     final: bool = False
 
 
+def prepare(template: Parts) -> None:
+    """Turns a wording into states, which the first match does otherwise."""
+    if not template.states:
+        template.states.append(_states(template.parts, _State(final=True)))
+
+
 def match(
     template: Parts, tokens: Sequence[str], at: int, fillers: Fillers
 ) -> Iterator[tuple[int, Bound]]:
@@ -228,8 +234,7 @@ def match(
     A wording is turned into states once, in which a word leads to one place at most: long lists of
     alternatives cost a look-up, not a try each.
     """
-    if not template.states:
-        template.states.append(_states(template.parts, _State(final=True)))
+    prepare(template)
     seen = set()
     waiting: list[tuple[_State, int, Bound]] = [(template.states[0], at, ())]
     size = len(tokens)

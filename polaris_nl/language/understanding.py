@@ -35,6 +35,7 @@ from polaris_nl.language.scope import Unclear
 from polaris_nl.language.segment import Cut, Segmenter, cheapest
 from polaris_nl.language.spelling import Spelling
 from polaris_nl.language.statements import Statements
+from polaris_nl.language.template import prepare
 from polaris_nl.language.tokens import BREAK, COMMA, LONGEST, MOST_WORDS, words
 from polaris_nl.language.wording import GrammarWording
 from polaris_nl.model.formula import Literal
@@ -144,6 +145,15 @@ class Understanding:
         changed = apply_all(program, meant.edits)
         latest = Latest(tuple(tokens), program, changed, replace(before, latest=None))
         return replace(after, missed=False, latest=latest)
+
+    def warm_up(self) -> None:
+        """Loads what the first utterance would wait for: the dictionary, and the wordings' states."""
+        for said in ("help", "hlep"):  # The dictionary is for the first word that isn't known.
+            self.interpret(said, Automaton())
+        for phrases in self.grammar.predicates.values():
+            for templates in phrases.wordings.values():
+                for template in templates:
+                    prepare(template)
 
     def read_back(self, program: Automaton) -> str:
         """A program in words."""
