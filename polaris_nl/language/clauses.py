@@ -9,7 +9,7 @@ from typing import Literal as OneOf
 from polaris_nl.language.grammar import Grammar
 from polaris_nl.language.mention import ASKED, EVERYTHING, SPEAKER, SPOKEN_OF, Mention
 from polaris_nl.language.mention_cost import MentionCost
-from polaris_nl.language.template import NAMED, Parts, Slot, first_words, match
+from polaris_nl.language.template import NAMED, Parts, Slot, first_words, match, words_behind
 from polaris_nl.language.verbs import INFLECTED, Inflection, Verbs
 from polaris_nl.model.world import World
 
@@ -92,6 +92,7 @@ class ClauseFinder:
         self._cost = MentionCost(world)
         self._by_word: dict[str, list[_Form]] = {}
         self._anywhere: list[_Form] = []
+        self._behind: list[frozenset[str] | None] = []
         common = grammar.common
         self._determiners = {w[0] for w in common.determiners} | set(common.possessives)
         self.verbs = verbs_of(grammar)
@@ -130,16 +131,26 @@ class ClauseFinder:
             known: what fits where, kept from one position of an utterance to the next.
         """
         known = {} if known is None else known
-        forms = [
-            *self._by_word.get(tokens[start], ()),
-            *(self._anywhere if mentions[start] else ()),
-        ]
+        forms = [*self._by_word.get(tokens[start], ()), *self._led(tokens, start, mentions[start])]
         yield from self._matched(forms, tokens, start, mentions, "base", known)
         for inflection in INFLECTED:
             for verb in self.verbs.bases(tokens[start], inflection):
                 imperative = [*tokens[:start], verb, *tokens[start + 1 :]]
                 goals = [f for f in self._by_word.get(verb, ()) if f.kind == "goal"]
                 yield from self._matched(goals, imperative, start, mentions, inflection, known)
+
+    def _led(
+        self, tokens: Sequence[str], start: int, mentions: Sequence[Mention]
+    ) -> Iterator[_Form]:
+        """The wordings that begin with a slot and can go on with a word that follows a mention."""
+        if not mentions:
+            return
+        words = {tokens[start], *(tokens[m.end] for m in mentions if m.end < len(tokens))}
+        if not self._behind:
+            self._behind.extend(words_behind(form.template) for form in self._anywhere)
+        for form, behind in zip(self._anywhere, self._behind, strict=True):
+            if behind is None or not behind.isdisjoint(words):
+                yield form
 
     def _matched(
         self,

@@ -285,6 +285,15 @@ def _merged(states: Sequence[_State], known: dict[frozenset[int], _State]) -> _S
     return merged
 
 
+def words_behind(template: Parts) -> frozenset[str] | None:
+    """The words that can come first, or right behind a slot that comes first; None where anything can."""
+    prepare(template)
+    state = template.states[0]
+    if state.final or any(after.slots or after.final for _, after in state.slots):
+        return None
+    return frozenset(state.words).union(*(after.words for _, after in state.slots))
+
+
 def first_words(template: Parts) -> frozenset[str] | None:
     """The words that a match can start with; None where a slot can stand first."""
     words: set[str] = set()

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 from polaris_nl.automaton.automaton import Automaton
 from polaris_nl.automaton.edits import apply_all
@@ -43,6 +44,8 @@ from polaris_nl.model.world import World
 
 TRIED = 6
 """Ways to cut an utterance that are tried before it is refused or asked about."""
+CUTS_KEPT = 64
+"""Utterances, or parts of them, whose cuts are remembered."""
 
 
 class Understanding:
@@ -78,6 +81,8 @@ class Understanding:
         references = References(self.grammar, clauses.verbs, self._reads)
         self._edits = Patterns(common.of_kind("edit"), references, common.numbers)
         queries = Patterns(common.of_kind("query"), references, common.numbers)
+        # An utterance is cut several times on the way to its meaning: as a whole, and without fillers.
+        self._cut = lru_cache(CUTS_KEPT)(self._cheapest)
         self._asking = Asking(common, queries)
         self._changes = Changes(self)
         self._read_in: Automaton | None = None
@@ -150,10 +155,10 @@ class Understanding:
         """Loads what the first utterance would wait for: the dictionary, and the wordings' states."""
         for said in ("help", "hlep"):  # The dictionary is for the first word that isn't known.
             self.interpret(said, Automaton())
-        for phrases in self.grammar.predicates.values():
-            for templates in phrases.wordings.values():
-                for template in templates:
-                    prepare(template)
+        goals = (w for p in self.grammar.predicates.values() for w in p.wordings.values())
+        intents = (intent.wordings for intent in self.grammar.common.intents)
+        for template in itertools.chain.from_iterable((*goals, *intents)):
+            prepare(template)
 
     def read_back(self, program: Automaton) -> str:
         """A program in words."""
@@ -273,7 +278,10 @@ class Understanding:
 
     def cuts(self, tokens: Sequence[str]) -> list[Cut]:
         """The best ways to cut tokens into clauses."""
-        return cheapest(self._segmenter.cut(tokens, self.mentions(tokens)), TRIED)
+        return list(self._cut(tuple(tokens)))
+
+    def _cheapest(self, tokens: tuple[str, ...]) -> tuple[Cut, ...]:
+        return tuple(cheapest(self._segmenter.cut(tokens, self.mentions(tokens)), TRIED))
 
     def mentions(self, tokens: Sequence[str]) -> list[tuple[Mention, ...]]:
         """The mentions that start at each position."""
