@@ -91,9 +91,7 @@ _PRONOUNS = frozenset(
 )
 _NEAR = 8
 """Words within which a pronoun takes a topic up."""
-_ONWARD = frozenset(
-    ("then", "and", "but", "wait", "until", "till", "next", "finally", "afterwards")
-)
+_ONWARD = frozenset(("then", "wait", "until", "till", "next", "finally", "afterwards"))
 """Words behind what is wanted, not behind what is only named: "plate on the table then wait till it's full"."""
 _JOINING = ("so", "and", "but")
 _SEVERAL = frozenset({"them", "they", "these", "those", "both", "there"})
