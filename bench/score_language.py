@@ -21,8 +21,9 @@ from typing import Any
 from polaris_nl.language.understanding import Understanding
 from polaris_nl.model.formula import Literal
 from polaris_nl.model.world import World
-from tests.language import corpora
-from tests.language.corpora import Annotated, Judgement, Reading, Sentence
+from tests.language import corpora, corpora_judging
+from tests.language.corpora import Annotated, Sentence
+from tests.language.corpora_judging import Judgement, Reading
 
 FORMS: Mapping[str, Callable[[str], str]] = {"typed": str, "speech": corpora.spoken}
 
@@ -47,8 +48,8 @@ def scored(form: str = "typed", whole: bool = False) -> list[Scored]:
     found = []
     for sentence in corpora.annotated():
         world, language = _language(sentence, whole)
-        reading = corpora.read(language, FORMS[form](sentence.text))
-        found.append(Scored(sentence, reading, corpora.judge(sentence, world, reading)))
+        reading = corpora_judging.read(language, FORMS[form](sentence.text))
+        found.append(Scored(sentence, reading, corpora_judging.judge(sentence, world, reading)))
     return found
 
 
@@ -159,7 +160,7 @@ def _corpus(name: str) -> tuple[list[Sentence], World, Understanding]:
 def larger(name: str, form: str) -> tuple[Larger, list[tuple[Sentence, Reading]]]:
     """Reads a larger corpus in a form."""
     found, world, language = _corpus(name)
-    readings = [(s, corpora.read(language, FORMS[form](s.text))) for s in found]
+    readings = [(s, corpora_judging.read(language, FORMS[form](s.text))) for s in found]
     return _counted(name, form, readings, world), readings
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Literal as OneOf
 
 from polaris_nl.language.grammar import Grammar
@@ -74,6 +75,7 @@ class _Form:
 
 
 _INSIDE = ("in", "there")
+"""Says a container: nothing is put in a table."""
 Fitting = dict[tuple[int, tuple[str, ...]], Sequence[tuple[int, object]]]
 _WORDLESS: Mapping[tuple[str, ...], Mention] = {
     (EVERYTHING,): Mention(0, 0, EVERYTHING, quantifier="all"),
@@ -92,7 +94,6 @@ class ClauseFinder:
         self._cost = MentionCost(world)
         self._by_word: dict[str, list[_Form]] = {}
         self._anywhere: list[_Form] = []
-        self._behind: list[frozenset[str] | None] = []
         common = grammar.common
         self._determiners = {w[0] for w in common.determiners} | set(common.possessives)
         self.verbs = verbs_of(grammar)
@@ -142,15 +143,16 @@ class ClauseFinder:
     def _led(
         self, tokens: Sequence[str], start: int, mentions: Sequence[Mention]
     ) -> Iterator[_Form]:
-        """The wordings that begin with a slot and can go on with a word that follows a mention."""
-        if not mentions:
-            return
+        """The wordings that may begin with a slot, and can go on with what follows a mention."""
         words = {tokens[start], *(tokens[m.end] for m in mentions if m.end < len(tokens))}
-        if not self._behind:
-            self._behind.extend(words_behind(form.template) for form in self._anywhere)
-        for form, behind in zip(self._anywhere, self._behind, strict=True):
+        for form, behind in self._going_on:
             if behind is None or not behind.isdisjoint(words):
                 yield form
+
+    @cached_property
+    def _going_on(self) -> tuple[tuple[_Form, frozenset[str] | None], ...]:
+        """Wordings that may begin with a slot, and the words they begin or go on with."""
+        return tuple((form, words_behind(form.template)) for form in self._anywhere)
 
     def _matched(
         self,
@@ -169,7 +171,7 @@ class ClauseFinder:
                 if key not in known:
                     known[key] = self._fitting(types, at, mentions)
                 if "surface" in types and (*tokens[max(at - 1, 0) : at + 1],) == _INSIDE:
-                    return ()  # Nothing is put in a table.
+                    return ()
                 determined = slot.type == NAMED and self._determiners & {*tokens[at : at + 1]}
                 return () if determined else known[key]
 

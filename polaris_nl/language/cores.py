@@ -8,8 +8,10 @@ from dataclasses import dataclass
 from polaris_nl.language.common import Common
 from polaris_nl.language.expansions import expansions
 from polaris_nl.language.patterns import strip
-from polaris_nl.language.tokens import BREAK, COMMA
+from polaris_nl.language.tokens import BREAK, COMMA, PhraseSet
 
+DO_NOT = ("do", "not")
+"""What a core that takes something back begins with, however that was said."""
 AROUND: Mapping[str, int] = {
     "correct-lead": 2,
     "correct-aside": 1,
@@ -39,15 +41,6 @@ class Core:
         return [t for t in self.tokens if t not in (COMMA, BREAK)]
 
 
-_NEED_NOT = (
-    ("you", "need", "not"),
-    ("you", "do", "not", "need", "to"),
-    ("you", "do", "not", "have", "to"),
-    ("there", "is", "no", "need", "to"),
-)
-"""What takes a request back as "do not" does."""
-
-
 class Cores:
     """Finds cores.
 
@@ -73,6 +66,7 @@ class Cores:
         # "Go" is a filler in "go and open it", and the verb in "no, go to the kitchen"; "would you mind"
         # decides how its verb stands, and "instead" what is replaced.
         needed = {("instead",), *common.connectives["polite"]}
+        self._denying = PhraseSet(common.connectives["not"])
         self._fillers = [
             f for f in common.fillers if f not in needed and (len(f) > 1 or f[0] not in verbs)
         ]
@@ -91,9 +85,9 @@ class Cores:
                 kept = strip(found, self._fillers)
                 changed = changed or kept != found
                 found = kept
-        for words in _NEED_NOT:
-            if tuple(found[: len(words)]) == words:
-                found = ["do", "not", *found[len(words) :]]
+        denied = self._denying.length_at(found, 0)
+        if denied:
+            found = [*DO_NOT, *found[denied:]]  # "You needn't go home."
         return Core(tuple(found), strength)
 
 

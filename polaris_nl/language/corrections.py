@@ -22,9 +22,10 @@ from polaris_nl.language.changes import (
     steps_there,
 )
 from polaris_nl.language.choosing import Choosing
+from polaris_nl.language.clauses import pronoun_types
 from polaris_nl.language.conditions import condition_in
 from polaris_nl.language.contrasted import put_instead
-from polaris_nl.language.cores import AROUND, Core, Cores, trimmed
+from polaris_nl.language.cores import AROUND, DO_NOT, Core, Cores, trimmed
 from polaris_nl.language.dialogue import Dialogue, Latest
 from polaris_nl.language.exchange import exchanged, used_in, without
 from polaris_nl.language.generate import goals_in_words, steps_in_words
@@ -46,9 +47,7 @@ from polaris_nl.model.text import listed, sentence
 WHAT_INSTEAD = "I don't see what should be changed; say what you meant, or undo."
 _MORE = ("also", "too", "as well", "again")
 """Words of a sentence that adds to what was said, however it starts."""
-_NEVER = ("do", "not")
 _ONLY, _PLEASE = "only", "please"
-_PERSONS = ("me", "him", "her", "them", "us", "he", "she")
 _ON = ("and", "but", "then", "please")
 """Words between what isn't wanted and what is."""
 
@@ -122,7 +121,7 @@ class Corrections:
         if question is not None:
             raise question
         if not core.strength:
-            if core.tokens[:2] == _NEVER:
+            if core.tokens[:2] == DO_NOT:
                 return self._taken_back(utterance, core, program, dialogue)
             return self._limited(utterance, core, program, dialogue)
         edited = self._language.edited(utterance, core.tokens, program, dialogue)
@@ -156,7 +155,7 @@ class Corrections:
             return self._left_out(match, where, rest, program, dialogue)
         new, old = match.slots["x"], match.slots.get("y")
         assert isinstance(new, Mention)
-        if isinstance(old, Mention) and old.pronoun in _PERSONS:
+        if isinstance(old, Mention) and pronoun_types(old.pronoun) == ("person",):
             old = None  # "Not him": whoever of that kind was just spoken of.
         entities, everything = self._choosing.entities(new, old, where, program, dialogue)
         if old is None and set(entities) <= set(used_in(program, where)):
@@ -341,7 +340,7 @@ class Corrections:
         target = place_of(step.goals, touched, program)
         if core.strength < 2 and target is None:
             return None
-        if core.tokens[:2] == _NEVER:
+        if core.tokens[:2] == DO_NOT:
             left = negated(step.goals, touched, program)
             if left is not None:
                 return self._applied(utterance, *left, program, dialogue, touched)

@@ -21,6 +21,8 @@ _VAGUE = {
     "any": "", "some": "", "a": "", "an": "", "no": "",
 }  # fmt: skip
 """Words that make "is ... there?" ask whether there is one, with what stands for what is asked."""
+_SUBJECT = 4
+"""Words within which what a question is about begins: "the door of the fridge"."""
 _HAVING = (("have",), ("have", "got"), ("got",), ("hold",), ("holding",), ("carry",), ("carrying",))
 _BEING_THERE = (
     ("are", "there"),
@@ -104,7 +106,7 @@ class FactsAsked:
             return None
         mentions = self._language.mentions(rest)
         # "The door of the fridge" and "the fridge door" end behind, or within, what is named in them.
-        named = {m.end for there in mentions[:4] for m in there}
+        named = {m.end for there in mentions[:_SUBJECT] for m in there}
         first = {m.end for m in mentions[0]}
         ends = [
             *sorted(first | {1, 2}, key=lambda end: (end < 3, -end)),

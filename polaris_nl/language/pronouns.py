@@ -47,7 +47,7 @@ class Pronouns:
         both = mention.pronoun.endswith("both") or mention.pronoun.startswith("both")
         if (
             mention.pronoun in _PLURAL
-            and len(scope.group) > both
+            and len(scope.group) >= (2 if both else 1)
             and all(is_a(self._world, n, types) for n in scope.group)
         ):
             return Meant(scope.group)

@@ -5,8 +5,19 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from polaris_nl.language.clauses import Clause
 from polaris_nl.language.goal_relations import flat, one_at_a_time
+from polaris_nl.language.order_words import (
+    BUT_FIRST,
+    ENDING,
+    FIRST,
+    INSTEAD,
+    LATER,
+    SEQUELS,
+    all_postposed,
+    goes_on,
+    says_only_names,
+    without,
+)
 from polaris_nl.language.resolve import Resolver
 from polaris_nl.language.scope import Misfit, Scope
 from polaris_nl.language.segment import Cut, Item
@@ -16,19 +27,6 @@ from polaris_nl.model.formula import Goal, Literal
 
 VIA = "via"
 """The slot of a wording for what is passed on the way."""
-_FIRST = ("first", "first of all", "beforehand", "before that", "before")
-_LATER = ("afterwards", "after that", "and afterwards", "later", "thereafter", "subsequently")
-"""Behind a goal, these make it a step of its own: "put it in and close it afterwards"."""
-_BUT_FIRST = "but"
-"""Begins what is to come before the goals in front of it: "close it, but first put the cup in it"."""
-_SEQUELS = ("then", "and then", "after that", "and after that", "afterwards", "and afterwards")
-"""Words in front of a condition that keep it where the program has come to."""
-_INSTEAD = "in which case"
-"""Behind "unless ...", says what is to be done then."""
-_ENDING = ("finish", "end")
-"""Begins a step of its own: "... and finish by shutting it"."""
-_GOING_ON = (*_SEQUELS[1:], "and finally", "and next", "finally", "after this")
-"""Words after a condition that stands behind its goal: "bring it once she acknowledges, and then ..."."""
 
 
 def steps_of(
@@ -86,7 +84,7 @@ class _Reader:
         self._negate = False
         self._instead = False
         self._unless: tuple[Literal, ...] = ()
-        self._postposed = _all_postposed(self.items)
+        self._postposed = all_postposed(self.items)
 
     def read(self) -> None:
         """Takes one item."""
@@ -97,13 +95,13 @@ class _Reader:
             self._condition(item.mark)
         elif item.mark in ("before", "done"):
             self._ordered(item.mark)
-        elif item.mark == "then" and item.text in _FIRST and self._at_an_end():
+        elif item.mark == "then" and item.text in FIRST and self._at_an_end():
             if self._but_before():
                 self.done.put_off()
             self.done.move_to_front()
-        elif item.mark == "then" and item.text in _LATER and self._at_an_end():
+        elif item.mark == "then" and item.text in LATER and self._at_an_end():
             self.done.put_off()
-        elif item.mark == "then" and item.text.startswith(_INSTEAD) and self._leaves_out():
+        elif item.mark == "then" and item.text.startswith(INSTEAD) and self._leaves_out():
             self._instead = True
         elif item.mark in ("then", "break"):
             self._instead = False
@@ -112,8 +110,8 @@ class _Reader:
             if self.done.steps and not (self._how == "until" and self._when):
                 self.done.flush()
             self.done.new_step = True
-            self._sequel = item.mark == "then" and item.text in _SEQUELS
-            self._first = bool(self.done.steps) and item.text.split()[:1] == [_BUT_FIRST]
+            self._sequel = item.mark == "then" and item.text in SEQUELS
+            self._first = bool(self.done.steps) and item.text.split()[:1] == [BUT_FIRST]
         elif item.mark == "else":
             if self._how == "until":
                 self.finish()
@@ -122,7 +120,7 @@ class _Reader:
                     '"Otherwise" needs a condition before it: say "if ..., ... otherwise ...".'
                 )
             self.done.otherwise, self.done.new_step = True, True
-        elif item.mark == "polite" and item.text.split()[0] in _ENDING:
+        elif item.mark == "polite" and item.text.split()[0] in ENDING:
             self.done.new_step = True
         elif item.mark == "not":
             self._negate = True
@@ -253,7 +251,7 @@ class _Reader:
             raise Misfit("Before or after what? Say it in one sentence.")
         self.at += 1
         goals = (*self.done.literals(item, condition=False), *self._leaning())
-        if self.at < len(self.items) and self.items[self.at].text in _FIRST:
+        if self.at < len(self.items) and self.items[self.at].text in FIRST:
             self.at += 1
         behind = bool(self.done.steps) and not self.done.new_step
         late = said.text.split()
@@ -266,7 +264,7 @@ class _Reader:
             last = self.done.steps.pop()
             later = replace(last, goals=last.forbidden or last.goals, forbidden=())
             self.done.put_in_front(goals, later)
-        elif mark == "before" and _without(said):
+        elif mark == "before" and without(said):
             raise Misfit("I can only leave something out before I do something else.")
         elif mark == "before" and not behind:
             self.done.deferred = goals
@@ -282,7 +280,7 @@ class _Reader:
     def _but_before(self) -> bool:
         """Whether "but" stands before the latest goal: "shut it, but put the cup in it first"."""
         joined = [i for i in self.items[: self.at - 1] if i.mark in ("and", "comma")][-1:]
-        return any(i.text.startswith(_BUT_FIRST) for i in joined)
+        return any(i.text.startswith(BUT_FIRST) for i in joined)
 
     def _leaves_out(self) -> bool:
         """Whether a step stands last that is left out where something holds: "unless she has it"."""
@@ -308,10 +306,7 @@ class _Reader:
         rest = [i for i in self.items[self.at :] if i.mark != "comma"]
         if not rest or rest[0].mark in ("break", "else", "if", "until", "unless"):
             return True
-        goes_on = rest[0].mark == "then" and (
-            rest[0].text in _GOING_ON or rest[0].text.startswith(_INSTEAD)
-        )
-        return goes_on or self._postposed
+        return goes_on(rest[0]) or self._postposed
 
     def _attach(self, previous: Step, when: tuple[Literal, ...], mark: str) -> None:
         if mark == "unless" and previous.when:
@@ -341,7 +336,7 @@ class _Reader:
         if item.clause is not None and item.clause.kind == "ellipsis":
             self.done.check_places(goals)
             leans = any(g.predicate == item.clause.predicate for g in flat(self._latest))
-            if item is self.items[0] and _says_only_names(item.clause) and not leans:
+            if item is self.items[0] and says_only_names(item.clause) and not leans:
                 raise Misfit('I miss a verb; say for example "bring" before it.')
         self._by_way_of(item, goals)
         forbidden: tuple[Goal, ...] = ()
@@ -401,25 +396,3 @@ class _Reader:
                     Step((first,), self._when, "condition" if self._when else "then")
                 )
                 self._when, self._how, self.done.new_step = (), "", True
-
-
-def _says_only_names(clause: Clause) -> bool:
-    """Whether a clause has no words of its own: "anna the cup" leans on what was said just before."""
-    return sum(m.end - m.start for _, m in clause.bindings) == clause.end - clause.start
-
-
-def _without(item: Item) -> bool:
-    return item.mark == "before" and item.text.startswith("without")
-
-
-def _all_postposed(items: Sequence[Item]) -> bool:
-    """Whether goals and conditions alternate and a condition ends: "A if x and B if y"."""
-    roles = [i.role for i in items if i.role in ("goal", "condition")]
-    marks = [i.mark for i in items]
-    if len(roles) < 4 or "until" in marks or "then" in marks:
-        return False
-    return (
-        roles[0] == "goal"
-        and roles[-1] == "condition"
-        and roles == ["goal", "condition"] * (len(roles) // 2)
-    )

@@ -121,10 +121,10 @@ class StepsSoFar:
             with suppress(Misfit, Unclear):
                 self.scope = self.scope.after(self.resolver.meant(named, (), self.scope).entities)
                 things.extend(self.resolver.meant(named, ("object",), self.scope).entities)
-        if len(things) > 1:
-            self.scope = self.scope.after(
-                tuple(dict.fromkeys(things))
-            )  # "Take both of them to her."
+        if (
+            len(things) > 1
+        ):  # "... asked for a magazine and for juice, so take both of them to her."
+            self.scope = self.scope.after(tuple(dict.fromkeys(things)))
 
     def repeat_for(self, item: Item) -> None:
         """The goals of the step before, for another thing.

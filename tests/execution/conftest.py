@@ -7,6 +7,7 @@ import pytest
 from polaris_nl.model.world_file import load_world
 from polaris_nl.planning.planner import Planner
 from polaris_nl.session import Session
+from tests.execution.programs import programs_of
 from tests.execution.story import FULL_TRAY, Case, case
 
 LUNCH = (
@@ -37,6 +38,11 @@ def said(world: str, utterances: tuple[str, ...]) -> Case:
 @pytest.fixture(scope="session")
 def care() -> Planner:
     return Planner(load_world("care-home"))
+
+
+@pytest.fixture(scope="session")
+def programs(care: Planner) -> dict[str, Case]:
+    return programs_of(care)
 
 
 @pytest.fixture(scope="session")

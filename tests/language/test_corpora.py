@@ -9,7 +9,7 @@ from polaris_nl.language.understanding import Understanding
 from polaris_nl.model.check import formula_faults
 from polaris_nl.model.formula import Literal
 
-from . import corpora
+from . import corpora, corpora_judging
 
 pytestmark = pytest.mark.skipif(bool(corpora.missing()), reason=corpora.missing() or "there")
 
@@ -50,5 +50,5 @@ def test_what_is_no_goal_changes_nothing() -> None:
     if not found:
         pytest.skip("There is no clinc_refusal among the corpora.")
     language = Understanding(corpora.world_for("clinc_refusal", found))
-    applied = [s.id for s in found if corpora.read(language, s.text).outcome == "parse"]
+    applied = [s.id for s in found if corpora_judging.read(language, s.text).outcome == "parse"]
     assert len(applied) <= len(found) * NO_GOALS_APPLIED, applied

@@ -1,0 +1,50 @@
+"""Words that say in which order things are to be done, and how clauses stand to each other by them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from polaris_nl.language.clauses import Clause
+from polaris_nl.language.segment import Item
+
+FIRST = ("first", "first of all", "beforehand", "before that", "before")
+LATER = ("afterwards", "after that", "and afterwards", "later", "thereafter", "subsequently")
+"""Behind a goal, these make it a step of its own: "put it in and close it afterwards"."""
+BUT_FIRST = "but"
+"""Begins what is to come before the goals in front of it: "close it, but first put the cup in it"."""
+SEQUELS = ("then", "and then", "after that", "and after that", "afterwards", "and afterwards")
+"""Words in front of a condition that keep it where the program has come to."""
+INSTEAD = "in which case"
+"""Behind "unless ...", says what is to be done then."""
+ENDING = ("finish", "end")
+"""Begins a step of its own: "... and finish by shutting it"."""
+GOING_ON = (*SEQUELS[1:], "and finally", "and next", "finally", "after this")
+"""Words after a condition that stands behind its goal: "bring it once she acknowledges, and then ..."."""
+
+
+def says_only_names(clause: Clause) -> bool:
+    """Whether a clause has no words of its own: "anna the cup" leans on what was said just before."""
+    return sum(m.end - m.start for _, m in clause.bindings) == clause.end - clause.start
+
+
+def goes_on(item: Item) -> bool:
+    """Whether a word behind a condition only goes on, so that the condition is for what it follows."""
+    return item.mark == "then" and (item.text in GOING_ON or item.text.startswith(INSTEAD))
+
+
+def without(item: Item) -> bool:
+    """Whether something is said to be left undone before: "without opening it"."""
+    return item.mark == "before" and item.text.startswith("without")
+
+
+def all_postposed(items: Sequence[Item]) -> bool:
+    """Whether goals and conditions alternate and a condition ends: "A if x and B if y"."""
+    roles = [i.role for i in items if i.role in ("goal", "condition")]
+    marks = [i.mark for i in items]
+    if len(roles) < 4 or "until" in marks or "then" in marks:
+        return False
+    return (
+        roles[0] == "goal"
+        and roles[-1] == "condition"
+        and roles == ["goal", "condition"] * (len(roles) // 2)
+    )

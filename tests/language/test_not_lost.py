@@ -1,0 +1,102 @@
+"""What is asked for isn't lost behind what is told or named, and what differs by little isn't mixed up."""
+
+from __future__ import annotations
+
+import pytest
+
+from bench.speech_meaning import Context
+
+from .test_requests import understanding
+
+LADY = "bring the lady her book"
+
+
+@pytest.mark.parametrize(
+    ("world", "said", "meant"),
+    [
+        (
+            "dinner-party",
+            "the boy is bored so give him the magazine and give our visitor the remote",
+            "start [(has kid magazine) [(has guest remote)]]",
+        ),
+        (
+            "care-home",
+            "someone left the hamper open so please close it and after that go home",
+            "start [(not (open laundry-basket)) [(robot-at home)]]",
+        ),
+        (
+            "care-home",
+            "glasses on the nightstand and the novel on her bedside table",
+            "start [(at book table) & (at glasses nightstand)]",
+        ),
+        (
+            "dinner-party",
+            "plate on the worktop then wait until it's clean",
+            "start [(at plate countertop) [when (is-clean plate): -]]",
+        ),
+        (
+            "dinner-party",
+            "put the juice back in the fridge along with the bottle of wine",
+            "start [(in bottle fridge) & (in juice fridge)]",
+        ),
+        (
+            "dinner-party",
+            "our visitor asked for a magazine and for some juice so take both of them to her",
+            "start [(has guest juice) & (has guest magazine)]",
+        ),
+        (
+            "dinner-party",
+            "put the white bowl on the counter no the sideboard and then bring anna the spoon",
+            "start [(at white-bowl sideboard) [(has guest spoon)]]",
+        ),
+        (
+            "care-home",
+            "shut the fridge but put the water bottle in it first",
+            "start [(in water-bottle fridge) [(not (open fridge))]]",
+        ),
+        (
+            "care-home",
+            "if the cupboard is shut leave the plate on the counter else put it in there",
+            "start [(in plate cupboard)] [when (not (open cupboard)): (at plate worktop)]",
+        ),
+        (
+            "dinner-party",
+            "give the visitor the remote unless the kid has it in which case go to the lounge",
+            "start [(has guest remote)] [when (has kid remote): (robot-at living-room)]",
+        ),
+        (
+            "care-home",
+            "cup to the counter then the laundry room",
+            "start [(at cup worktop) [(robot-at laundry)]]",
+        ),
+        (
+            "dinner-party",
+            "if the door of the fridge is open close it",
+            "start [when (open fridge): (not (open fridge))]",
+        ),
+        ("dinner-party", "is the door of the fridge open now", "answer: is-it (open fridge)"),
+        ("care-home", "if she's home go home", "start [when (person-in resident home): (robot-at home)]"),
+        ("dinner-party", "if the guest isn't the kitchen go home", "refused"),
+    ],
+)  # fmt: skip
+def test_it_is_understood_as_a_whole(world: str, said: str, meant: str) -> None:
+    assert Context(understanding(world), ()).understood(said)[1] == meant
+
+
+@pytest.mark.parametrize(
+    ("before", "said", "meant"),
+    [
+        ((LADY,), "sorry it's for tom not for her", "start [(has mr-brown book)]"),
+        ((LADY,), "not her but mister brown", "start [(has mr-brown book)]"),
+        ((LADY, "then go home"), "you needn't go home after all", "start [(has resident book)]"),
+        (
+            ("put the cup in the fridge", "then close the fridge"),
+            "it is the blue mug that goes in the fridge not the white cup",
+            "start [(in blue-cup fridge) [(not (open fridge))]]",
+        ),
+    ],
+)
+def test_what_is_said_against_something_takes_its_place(
+    before: tuple[str, ...], said: str, meant: str
+) -> None:
+    assert Context(understanding("care-home"), before).understood(said)[1] == meant
