@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from polaris_nl.language.common import Common
 from polaris_nl.language.expansions import expansions
 from polaris_nl.language.patterns import strip
-from polaris_nl.language.tokens import BREAK, COMMA, PhraseSet
+from polaris_nl.language.tokens import BREAK, COMMA
 
 DO_NOT = ("do", "not")
 """What a core that takes something back begins with, however that was said."""
@@ -19,6 +19,8 @@ AROUND: Mapping[str, int] = {
     "correct-noise": 0,
 }
 """The intents of words around a correction, and how strongly each says that it is one."""
+NEEDLESS = "correct-needless"
+"""The intent of words in front of what needn't be done any more."""
 _WAITED = ("until", "till", "for", "here", "there")
 """Words behind "wait" that make it something to do."""
 
@@ -30,10 +32,12 @@ class Core:
     Attributes:
         tokens: what is left, without marks at its ends.
         strength: 2 behind "no" or "I meant", 1 behind "sorry" or "actually", else 0.
+        needless: it only takes something back: "you needn't go home".
     """
 
     tokens: tuple[str, ...]
     strength: int = 0
+    needless: bool = False
 
     @property
     def words(self) -> list[str]:
@@ -50,7 +54,7 @@ class Cores:
     """
 
     def __init__(self, common: Common, verbs: Collection[str]) -> None:
-        self._around = {
+        around = {
             intent.name: sorted(
                 {
                     tuple(str(w) for w in said)
@@ -61,12 +65,13 @@ class Cores:
                 reverse=True,
             )
             for intent in common.of_kind("correction")
-            if intent.name in AROUND
+            if intent.name in (*AROUND, NEEDLESS)
         }
+        self._needless = around.pop(NEEDLESS, [])
+        self._around = around
         # "Go" is a filler in "go and open it", and the verb in "no, go to the kitchen"; "would you mind"
         # decides how its verb stands, and "instead" what is replaced.
         needed = {("instead",), *common.connectives["polite"]}
-        self._denying = PhraseSet(common.connectives["not"])
         self._fillers = [
             f for f in common.fillers if f not in needed and (len(f) > 1 or f[0] not in verbs)
         ]
@@ -85,9 +90,9 @@ class Cores:
                 kept = strip(found, self._fillers)
                 changed = changed or kept != found
                 found = kept
-        denied = self._denying.length_at(found, 0)
-        if denied:
-            found = [*DO_NOT, *found[denied:]]  # "You needn't go home."
+        rest = _without(found, self._needless, False)
+        if rest is not None:
+            return Core((*DO_NOT, *rest), strength, True)  # "You needn't go home."
         return Core(tuple(found), strength)
 
 

@@ -14,6 +14,7 @@ from polaris_nl.automaton.edits import (
     SetGoals,
     apply_all,
 )
+from polaris_nl.language.another_condition import another_condition
 from polaris_nl.language.changes import (
     NO_STEPS,
     NOTHING_CHANGES,
@@ -25,7 +26,7 @@ from polaris_nl.language.choosing import Choosing
 from polaris_nl.language.clauses import pronoun_types
 from polaris_nl.language.conditions import condition_in
 from polaris_nl.language.contrasted import put_instead
-from polaris_nl.language.cores import AROUND, DO_NOT, Core, Cores, trimmed
+from polaris_nl.language.cores import AROUND, DO_NOT, NEEDLESS, Core, Cores, trimmed
 from polaris_nl.language.dialogue import Dialogue, Latest
 from polaris_nl.language.exchange import exchanged, used_in, without
 from polaris_nl.language.generate import goals_in_words, steps_in_words
@@ -38,7 +39,6 @@ from polaris_nl.language.references import References, meant
 from polaris_nl.language.rereading import Rereading
 from polaris_nl.language.retractions import negated, place_of
 from polaris_nl.language.scope import Misfit, Unclear
-from polaris_nl.language.structure import Step
 from polaris_nl.language.tokens import words
 from polaris_nl.model.errors import EditError
 from polaris_nl.model.formula import Literal
@@ -47,6 +47,7 @@ from polaris_nl.model.text import listed, sentence
 WHAT_INSTEAD = "I don't see what should be changed; say what you meant, or undo."
 _MORE = ("also", "too", "as well", "again")
 """Words of a sentence that adds to what was said, however it starts."""
+NOTHING_OF_THAT = "That isn't asked for, so there is nothing to leave out."
 _ONLY, _PLEASE = "only", "please"
 _ON = ("and", "but", "then", "please")
 """Words between what isn't wanted and what is."""
@@ -62,7 +63,7 @@ class Corrections:
         common = language.grammar.common
         intents = common.of_kind("correction")
         self.core = Cores(language.grammar.common, references.verbs).core
-        rest = [intent for intent in intents if intent.name not in AROUND]
+        rest = [intent for intent in intents if intent.name not in (*AROUND, NEEDLESS)]
         self._patterns = Patterns(rest, references, common.numbers)
         self._choosing = Choosing(language)
         self._again = Rereading(language, references)
@@ -120,14 +121,16 @@ class Corrections:
                 return self._applied(utterance, *found, program, dialogue, touched)
         if question is not None:
             raise question
+        if core.tokens[:2] == DO_NOT:
+            taken = self._taken_back(utterance, core, program, dialogue)
+            if taken is not None or not core.strength or core.needless:
+                return taken
         if not core.strength:
-            if core.tokens[:2] == DO_NOT:
-                return self._taken_back(utterance, core, program, dialogue)
             return self._limited(utterance, core, program, dialogue)
         edited = self._language.edited(utterance, core.tokens, program, dialogue)
         if edited is not None:
             return edited
-        condition = self._conditional(core, touched, program, dialogue)
+        condition = another_condition(self._language, core.words, touched, program, dialogue)
         if condition is not None:
             return self._applied(utterance, *condition, program, dialogue, touched)
         return self._sentence(utterance, core, touched, program, dialogue)
@@ -242,39 +245,14 @@ class Corrections:
             if len(program.checkpoints) == 1:
                 return NO_STEPS
             return f"{sentence(f'{thing} is in no step')} {steps_there(program)}"
+        if core.needless:
+            none = len(program.checkpoints) == 1
+            return NO_STEPS if none else f"{NOTHING_OF_THAT} {steps_there(program)}"
         if core.strength == 2 and len(program.checkpoints) > 1:
             return f"{WHAT_INSTEAD} {self._language.examples()}"
         return ""
 
-    # Conditions, sentences
-
-    def _conditional(
-        self, core: Core, touched: Sequence[str], program: Automaton, dialogue: Dialogue
-    ) -> tuple[list[Edit], str] | None:
-        """Another condition: "no, if he acknowledges it"."""
-        words = core.words
-        when = condition_in(self._language, words, (0, len(words)), dialogue.scope, introduced=True)
-        if not when or not touched:
-            return None
-        way = [touched[-1], *(t.source for t in reversed(program.path(touched[-1])))]
-        arrows = [t for c in (*reversed(touched), *way) if (t := program.incoming(c)) is not None]
-        about = {a for x in when for a in x.args}
-        close = [t for t in arrows if t.when and about & {a for x in t.when for a in x.args}]
-        arrow = next(iter(close or [t for t in arrows if t.when] or arrows), None)
-        if arrow is None:
-            return None
-        for beside in program.outgoing(arrow.source):
-            if beside.id != arrow.id and beside.conditional == set(when):
-                name = program.checkpoints[beside.target].name
-                raise EditError(
-                    f"{name} is what happens then already; change or remove {name} first."
-                )
-        goals = program.checkpoints[arrow.target].goals
-        if arrow.conditional == set(when):
-            return [], NOTHING_CHANGES
-        names = self._language.names.renamed(program, arrow.target, goals, when)
-        say = steps_in_words([Step(goals, when, "condition")], self._language.wording)
-        return [SetConditional(arrow.id, when), *names], say
+    # Sentences
 
     def _limited(
         self, utterance: str, core: Core, program: Automaton, dialogue: Dialogue

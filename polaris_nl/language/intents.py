@@ -121,6 +121,7 @@ SIGNATURES: Mapping[str, Signature] = {
     "correct-aside": Signature("correction", whole=False),
     "correct-noise": Signature("correction", whole=False),
     "correct-tail": Signature("correction", whole=False),
+    "correct-needless": Signature("correction", whole=False),
 }
 """The intents that the program can act upon."""
 

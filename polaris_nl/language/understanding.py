@@ -220,7 +220,7 @@ class Understanding:
         if answer is not None:
             return answer
         said, after = self.said(utterance, tokens, program, dialogue)
-        if said.outcome == "refused" and core.tokens != tuple(bare):
+        if said.outcome == "refused" and core.tokens != tuple(bare) and not core.needless:
             again, then = self.said(utterance, core.tokens, program, dialogue)
             if again.outcome != "refused":
                 return again, then
