@@ -78,10 +78,13 @@ class Cores:
 
     def core(self, tokens: Sequence[str]) -> Core:
         """An utterance without "no, I meant" in front of it, "instead" behind it, and the like."""
-        found, strength = trimmed(tokens), 0
+        found, strength, needless = trimmed(tokens), 0, False
         changed = True
         while changed:
             changed = False
+            rest = _without(found, self._needless, False)
+            if rest is not None:  # Before "no" is taken for an answer: "no need to go home".
+                found, needless = [*DO_NOT, *rest], True
             for name, phrases in self._around.items():
                 kept = _without(found, phrases, name == "correct-tail")
                 if kept is not None:
@@ -90,10 +93,7 @@ class Cores:
                 kept = strip(found, self._fillers)
                 changed = changed or kept != found
                 found = kept
-        rest = _without(found, self._needless, False)
-        if rest is not None:
-            return Core((*DO_NOT, *rest), strength, True)  # "You needn't go home."
-        return Core(tuple(found), strength)
+        return Core(tuple(found), strength, needless)
 
 
 def trimmed(tokens: Sequence[str]) -> list[str]:
