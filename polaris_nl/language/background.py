@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Collection, Iterator, Sequence
 
 from polaris_nl.language.clauses import Clause
 from polaris_nl.language.common import Common
 from polaris_nl.language.mention import Mention
-from polaris_nl.language.requests import BE_OR_DO, SMALL, SUBJECTS, Requests
+from polaris_nl.language.requests import SMALL, SUBJECTS, Requests
 from polaris_nl.language.tokens import BREAK, COMMA, PhraseSet
 
 Span = tuple[int, int]
+Clauses = Sequence[Sequence[Clause]]
 _CONDITIONS = frozenset(
     ("if", "when", "once", "unless", "until", "till", "after", "before", "otherwise")
 )
@@ -25,10 +27,11 @@ _BEING = frozenset(("is", "are", "was", "were", "'s"))
 """Verbs that tell something also of what isn't known: "tv night is over so ..."."""
 _SO = "so"
 _FOR = "for"
-_OWNED = ("the", "our", "my", "his", "her", "their", "a", "an")
+OWNED = ("the", "our", "my", "his", "her", "their", "a", "an")
 _BEHIND = (BREAK, COMMA, "and", "then", "but", "please", "so", "if", "when", "once", "unless")
 """Words that may follow whom something is for."""
 _MOST_FOR = 5
+_MOST_NOUN = 2
 _MOST_TOLD = 16
 _MOST_OCCASION = 7
 _LEAST_LATE = 3
@@ -56,25 +59,32 @@ class Background:
         tokens: Sequence[str],
         at: int,
         mentions: Sequence[Sequence[Mention]],
-        clauses: Sequence[Sequence[Clause]],
+        clauses: Clauses,
     ) -> Iterator[Span]:
         """The stretches of words that are told around a request from a position on, and only told."""
         if self.begins(tokens, at):
             yield from self._told_before(tokens, at, mentions, clauses)
             yield from self._occasion(tokens, at, mentions, clauses)
         elif at:
-            yield from self.told_behind(tokens, at, clauses)
+            yield from self.told_behind(tokens, at, mentions, clauses)
             yield from self._for_others(tokens, at, mentions)
+            yield from self._deadline(tokens, at, clauses)
 
-    def remarks(self, tokens: Sequence[str]) -> Iterator[int]:
+    def remarks(
+        self, tokens: Sequence[str], mentions: Sequence[Sequence[Mention]]
+    ) -> Iterator[int]:
         """Where what may be told behind a request can begin."""
-        return (at for at in range(1, len(tokens)) if self._remarks.length_at(tokens, at))
+        return (at for at in range(1, len(tokens)) if self._opening(tokens, at, mentions))
 
     def told_behind(
-        self, tokens: Sequence[str], at: int, clauses: Sequence[Sequence[Clause]]
+        self,
+        tokens: Sequence[str],
+        at: int,
+        mentions: Sequence[Sequence[Mention]],
+        clauses: Clauses,
     ) -> Iterator[Span]:
         """`... she'll be wanting her tea`, at the end, where it is nothing that could be waited for."""
-        opening = self._remarks.length_at(tokens, at)
+        opening = self._opening(tokens, at, mentions)
         size = len(tokens)
         rest = tokens[at + opening :]
         if not opening or not rest or not _LEAST_LATE <= size - at <= _MOST_LATE:
@@ -96,6 +106,20 @@ class Background:
         if not meant and not any(c.end > at + 2 for c in clauses[at]):
             yield at, size
 
+    def _opening(
+        self, tokens: Sequence[str], at: int, mentions: Sequence[Sequence[Mention]]
+    ) -> int:
+        """How many words begin a remark at a position: "she can't", "the party's", "or the food"."""
+        if size := self._remarks.length_at(tokens, at):
+            return size
+        ends = [m.end for m in mentions[at] if m.candidates and not m.quantifier]
+        if tokens[at] in OWNED:
+            nouns = itertools.takewhile(
+                lambda i: tokens[i] not in SUBJECTS, range(at + 1, len(tokens))
+            )
+            ends += [i + 1 for i in itertools.islice(nouns, _MOST_NOUN)]
+        return next((e - at + 1 for e in ends if {*tokens[e : e + 1]} & _BEING), 0)
+
     def begins(self, tokens: Sequence[str], at: int) -> bool:
         """Whether only fillers stand before a position."""
         here = 0
@@ -106,7 +130,7 @@ class Background:
             here += step
         return here == at
 
-    def asks(self, tokens: Sequence[str], at: int, clauses: Sequence[Sequence[Clause]]) -> bool:
+    def asks(self, tokens: Sequence[str], at: int, clauses: Clauses) -> bool:
         """Whether something is asked for at a position, politely or not."""
         while at < len(tokens):
             if tokens[at] == "if" or any(c.kind in ("goal", "wish") for c in clauses[at]):
@@ -124,7 +148,7 @@ class Background:
         tokens: Sequence[str],
         at: int,
         mentions: Sequence[Sequence[Mention]],
-        clauses: Sequence[Sequence[Clause]],
+        clauses: Clauses,
     ) -> Iterator[Span]:
         """`the wine's been out all day so ...`: a sentence with a verb, and "so" before what is wanted."""
         subjects = [m.end for m in mentions[at] if not m.pronoun]
@@ -132,8 +156,7 @@ class Background:
             subjects.append(at + 1)
         if any(c.kind == "goal" for c in clauses[at]):
             return
-        told = any(w in BE_OR_DO for end in subjects for w in tokens[end : end + 3])
-        if not told and not _BEING & set(tokens[at + 1 : at + 4]):
+        if not subjects and not _BEING & set(tokens[at + 1 : at + 4]):
             return
         for end in range(at + 3, min(at + _MOST_TOLD, len(tokens) - 1) + 1):
             if tokens[end - 1] in _CONDITIONS or tokens[end - 1] in _CORRECTING - {"not"}:
@@ -141,16 +164,34 @@ class Background:
             if tokens[end] == _SO and self.asks(tokens, end + 1, clauses):
                 yield at, end + 1
                 return  # What is asked for behind it isn't told any more.
+            if any(_takes_up(c) for c in clauses[end]) and {*tokens[at:end]} & _BEING:
+                yield at, end
+                return
+
+    def _deadline(self, tokens: Sequence[str], at: int, clauses: Clauses) -> Iterator[Span]:
+        """`... before the soup gets cold`, at the end, where it is nothing that could be known."""
+        start, size = at + 1, len(tokens)
+        if (
+            tokens[at] != "before"
+            or not _LEAST_LATE <= size - at <= _MOST_LATE
+            or "not" in tokens[:at]  # Then it waits for that.
+        ):
+            return
+        subject = tokens[start] in OWNED or tokens[start] in SUBJECTS
+        if not subject or _ENDING & {*tokens[start:]} or BREAK in tokens[start:]:
+            return
+        if not any(there for there in clauses[start:]):
+            yield at, size
 
     def _for_others(
         self, tokens: Sequence[str], at: int, mentions: Sequence[Sequence[Mention]]
     ) -> Iterator[Span]:
         """`... for the summer buffet`: what or whom something is for, where that is nothing known."""
-        if tokens[at] != _FOR or not {*tokens[at + 1 : at + 2]} & {*_OWNED}:
+        if tokens[at] != _FOR or not {*tokens[at + 1 : at + 2]} & {*OWNED}:
             return
         for end in range(at + 3, min(at + _MOST_FOR, len(tokens)) + 1):
             last = tokens[end - 1]
-            begins = self._requests.may_begin(tokens, end - 1) and tokens[end - 2] not in _OWNED
+            begins = self._requests.may_begin(tokens, end - 1) and tokens[end - 2] not in OWNED
             if last in _CONDITIONS or any(m.candidates for m in mentions[end - 1]) or begins:
                 return
             if last not in SMALL and (end == len(tokens) or tokens[end] in _BEHIND):
@@ -161,7 +202,7 @@ class Background:
         tokens: Sequence[str],
         at: int,
         mentions: Sequence[Sequence[Mention]],
-        clauses: Sequence[Sequence[Clause]],
+        clauses: Clauses,
     ) -> Iterator[Span]:
         """`for the starter we need ...`: what something is wanted for, where that is nothing known."""
         if tokens[at] != _FOR:
@@ -173,6 +214,12 @@ class Background:
             named = any(m.end == end for there in mentions[at + 1 : end] for m in there)
             if last not in SMALL and not named and self.asks(tokens, end, clauses):
                 yield at, end
+
+
+def _takes_up(clause: Clause) -> bool:
+    """Whether a request is about what was just spoken of: "the magazine's in the way, move it"."""
+    asked = clause.kind == "goal" and clause.form == "base"
+    return asked and any(m.pronoun in ("it", "them") for _, m in clause.bindings)
 
 
 def _leans(clause: Clause, first: str) -> bool:

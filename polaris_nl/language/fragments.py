@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal as OneOf
 
-from polaris_nl.language.background import Background
+from polaris_nl.language.background import OWNED, Background
 from polaris_nl.language.clauses import Clause, ClauseFinder
 from polaris_nl.language.common import Common
 from polaris_nl.language.mention import Mention
@@ -94,6 +94,11 @@ _NEAR = 8
 _ONWARD = frozenset(("then", "wait", "until", "till", "next", "finally", "afterwards"))
 """Words behind what is wanted, not behind what is only named: "plate on the table then wait till it's full"."""
 _JOINING = ("so", "and", "but")
+_ENABLING = frozenset(
+    ("can", "could", "will", "would", "may", "might", "do", "does", "stay", "stays", "get", "gets")
+)
+"""Verbs of what a request makes possible: "so the clothes can air"."""
+_ASKING = ("goal", "wish", "ellipsis")
 _SEVERAL = frozenset({"them", "they", "these", "those", "both", "there"})
 Mentions = Sequence[Sequence[Mention]]
 Clauses = Sequence[Sequence[Clause]]
@@ -144,10 +149,10 @@ class Fragments:
         """
         yield from self._same_again(tokens, at, mentions)
         yield from self._left_out(tokens, at, mentions)
-        yield from _same_with(tokens, at, mentions)
+        yield from self._same_with(tokens, at, mentions, clauses)
         yield from self._topics(tokens, at, mentions, clauses)
         yield from self._contrasts(tokens, at, mentions, clauses)
-        yield from self._given_reasons(tokens, at, clauses)
+        yield from self._given_reasons(tokens, at, mentions, clauses)
         yield from self._beneficiaries(tokens, at, mentions)
         yield from self._told_of_people(tokens, at, mentions, clauses)
         yield from self._excuses(tokens, at, mentions, clauses)
@@ -180,6 +185,20 @@ class Fragments:
             if words in self._excepting and start < len(tokens):
                 for mention in mentions[start]:
                     yield Fragment(mention.end, AGAIN_COST, "except", mention)
+
+    def _same_with(
+        self, tokens: Sequence[str], at: int, mentions: Mentions, clauses: Clauses
+    ) -> Iterator[Fragment]:
+        """`otherwise the juice`."""
+        before = tuple(tokens[max(0, at - 3) : at])
+        if not (before[-1:] and before[-1] in _LEADING) and before[-2:] not in _LEADING_PAIRS:
+            return
+        for mention in mentions[at]:
+            end = mention.end
+            ends = end == len(tokens) or tokens[end] in _ENDS
+            ends = ends or any(self.background.told_behind(tokens, end, mentions, clauses))
+            if ends and mention.candidates:
+                yield Fragment(end, BARE_COST, "again", mention)
 
     def _topics(
         self, tokens: Sequence[str], at: int, mentions: Mentions, clauses: Clauses
@@ -216,17 +235,23 @@ class Fragments:
                 yield from (Fragment(end, CONTRAST_COST) for end in ends)
 
     def _given_reasons(
-        self, tokens: Sequence[str], at: int, clauses: Clauses
+        self, tokens: Sequence[str], at: int, mentions: Mentions, clauses: Clauses
     ) -> Iterator[Fragment]:
         """`so that she can read`."""
         for words in self._phrases(tokens, at):
             if words not in self._reasons or _purpose(words, at, clauses):
                 continue
-            start = at + len(words)
-            for end in range(start, len(tokens) + 1):
-                if end > start and tokens[end - 1] == BREAK:
-                    break
-                yield Fragment(end, REASON_COST + REASON_WORD_COST * (end - start))
+            yield from _passed_over(tokens, at + len(words))
+        start = at + 1
+        if tokens[at] == "so" and start < len(tokens):
+            # "So the clothes can air": what "so she can" is for those that have a name.
+            ends = {m.end for m in mentions[start] if not m.pronoun}
+            if tokens[start] in OWNED:
+                ends |= {start + 2, start + 3}
+            if not any(c.kind in _ASKING for c in clauses[start]):
+                for end in ends:
+                    if {*tokens[end : end + 1]} & _ENABLING:
+                        yield from _passed_over(tokens, end + 1)
 
     def _beneficiaries(
         self, tokens: Sequence[str], at: int, mentions: Mentions
@@ -263,7 +288,8 @@ class Fragments:
                     topic = Mention(at, end, " ".join(tokens[at:end]), parts=named)
                     cost = TELLING_COST + REASON_WORD_COST * (end - verb)
                     yield Fragment(end, cost, "topic", topic)
-                if tokens[end - 1] in _JOINING and self.background.asks(tokens, end, clauses):
+                asked = self.background.asks(tokens, end, clauses)
+                if tokens[end - 1] == "so" or (tokens[end - 1] in _JOINING and asked):
                     break  # What is asked for isn't told any more, and must not be lost.
 
     def _excuses(
@@ -299,15 +325,12 @@ def _pronouns(tokens: Sequence[str], at: int, mentions: Mentions) -> frozenset[s
     return _PRONOUNS & {tokens[i] for i in near if i not in owning}
 
 
-def _same_with(tokens: Sequence[str], at: int, mentions: Mentions) -> Iterator[Fragment]:
-    """`otherwise the juice`."""
-    before = tuple(tokens[max(0, at - 3) : at])
-    if not (before[-1:] and before[-1] in _LEADING) and before[-2:] not in _LEADING_PAIRS:
-        return
-    for mention in mentions[at]:
-        ends = mention.end == len(tokens) or tokens[mention.end] in _ENDS
-        if ends and mention.candidates:
-            yield Fragment(mention.end, BARE_COST, "again", mention)
+def _passed_over(tokens: Sequence[str], start: int) -> Iterator[Fragment]:
+    """A reason that goes on at a position, as far as it may go."""
+    for end in range(start, len(tokens) + 1):
+        if end > start and tokens[end - 1] == BREAK:
+            break
+        yield Fragment(end, REASON_COST + REASON_WORD_COST * (end - start))
 
 
 def _purpose(words: Sequence[str], at: int, clauses: Clauses) -> bool:

@@ -7,9 +7,10 @@ from collections.abc import Sequence
 from polaris_nl.language.structure import Step
 from polaris_nl.model.formula import Formula, Goal, Imply, Literal, Quantified
 
-SEPARATE = ("robot-at", "alerted-to", "person-in", "holding", "has")
+ROBOT_AT = "robot-at"
+SEPARATE = (ROBOT_AT, "alerted-to", "person-in", "holding", "has")
 """Goals that are steps of their own when joined by "and": where the robot is, and what happens to people."""
-ONE_AT_A_TIME = ("robot-at",)
+ONE_AT_A_TIME = (ROBOT_AT,)
 """Goals of which one rules the next out: "go to the kitchen and the office" is a sequence."""
 SOUGHT = ("found",)
 """Goals after which "it should be on the desk" is a hint."""

@@ -71,6 +71,10 @@ class Lexicon:
     """The phrases of a world, in a trie of words."""
 
     def __init__(self, world: World) -> None:
+        self.places = frozenset(
+            e.name for e in world.entities.values() if e.type in ("surface", "container")
+        )
+        """Where things can be."""
         drafts: dict[tuple[str, ...], _Draft] = {}
         for entity in world.entities.values():
             for words, rank, kind in _phrases(entity):

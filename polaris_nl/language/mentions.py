@@ -167,12 +167,19 @@ class MentionFinder:
             )
         # Which things are near others isn't known, so that only describes.
         size = self._beside.length_at(tokens, inner)
+        if tokens[inner : inner + 1] in (["with"], ("with",)) and self._is_one(mention):
+            size = 0  # "Go to the kitchen with the cup", "give her the tray with the cup" ask for both.
         for other in self._single(tokens, inner + size) if size else ():
             if not other.pronoun:
                 yield replace(_longer(tokens, mention, other.end), beside=True)
         size = self._whereabouts.length_at(tokens, inner)
         if size:
             yield replace(_longer(tokens, mention, inner + size), beside=True)
+
+    def _is_one(self, mention: Mention) -> bool:
+        """Whether it needn't be told from others, and nothing can stand on it."""
+        named = {c.entity for c in mention.candidates}
+        return len(named) == 1 and not named & self._lexicon.places
 
     def _of(self, tokens: Sequence[str], mention: Mention) -> Iterator[Mention]:
         """`the table of the resident`."""

@@ -12,6 +12,8 @@ LATER = ("afterwards", "after that", "and afterwards", "later", "thereafter", "s
 """Behind a goal, these make it a step of its own: "put it in and close it afterwards"."""
 BUT_FIRST = "but"
 """Begins what is to come before the goals in front of it: "close it, but first put the cup in it"."""
+WITH = ("with", "holding", "carrying")
+"""Begins what the robot holds where it goes: "go to the kitchen with the cup"."""
 SEQUELS = ("then", "and then", "after that", "and after that", "afterwards", "and afterwards")
 """Words in front of a condition that keep it where the program has come to."""
 INSTEAD = "in which case"

@@ -13,6 +13,7 @@ from polaris_nl.language.order_words import (
     INSTEAD,
     LATER,
     SEQUELS,
+    WITH,
     all_postposed,
     goes_on,
     says_only_names,
@@ -80,6 +81,7 @@ class _Reader:
         self._when: tuple[Literal, ...] = ()
         self._how = ""
         self._how_said = ""
+        self._joined = False
         self._waits = False
         self._negate = False
         self._instead = False
@@ -92,6 +94,8 @@ class _Reader:
         self.at += 1
         if item.mark in ("if", "until", "unless"):
             self._how_said = item.text
+            before = self.items[self.at - 2 : self.at - 1]
+            self._joined = "and" in (item.text.split()[0], *(i.mark for i in before))
             self._condition(item.mark)
         elif item.mark in ("before", "done"):
             self._ordered(item.mark)
@@ -306,7 +310,8 @@ class _Reader:
         rest = [i for i in self.items[self.at :] if i.mark != "comma"]
         if not rest or rest[0].mark in ("break", "else", "if", "until", "unless"):
             return True
-        return goes_on(rest[0]) or self._postposed
+        # "Do A, and if it's clean after that do B": the condition is for what follows.
+        return (goes_on(rest[0]) and not self._joined) or self._postposed
 
     def _attach(self, previous: Step, when: tuple[Literal, ...], mark: str) -> None:
         if mark == "unless" and previous.when:
@@ -338,6 +343,9 @@ class _Reader:
             leans = any(g.predicate == item.clause.predicate for g in flat(self._latest))
             if item is self.items[0] and says_only_names(item.clause) and not leans:
                 raise Misfit('I miss a verb; say for example "bring" before it.')
+            if item.text.split()[0] in WITH:
+                self.done.go_with(goals, item.text)
+                return
         self._by_way_of(item, goals)
         forbidden: tuple[Goal, ...] = ()
         if self._negate:

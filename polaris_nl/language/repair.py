@@ -25,6 +25,9 @@ _MORE = frozenset(("too", "also", "well", "then", "and"))
 """Words of what comes on top, and in the place of nothing."""
 _WAITS = frozenset(("if", "when", "once", "unless", "until", "till", "says", "said", "say"))
 """Words before a "no" that somebody else may say: "if she says no tell the nurse"."""
+_TOLD_BEHIND = ("before", "is", "'s", "are", "was", "were")
+"""Words with which more may be told behind a request."""
+_WANTING = ("wants", "needs", "would", "could", "asks", "fancies")
 _TAKEN_UP = ("it", "them", "one", "him", "her")
 LONG = 25
 """Words beyond which fewer candidates are tried: each costs as much as a reading."""
@@ -90,6 +93,7 @@ class Repairs:
         bare = self._bare(tokens)
         yield bare
         yield from self._active(bare)
+        yield from self._with_subject(tokens, mentions)
         yield from self._for_each(tokens, mentions)
         yield from self._corrected(tokens, mentions, self._all_markers)
         yield _once(tokens)
@@ -101,7 +105,7 @@ class Repairs:
         counting = {tokens[m.start] for there in mentions for m in there if m.number and m.plural}
         for words in (bare, tokens):
             for at, word in enumerate(words):
-                if at and self._remarks.length_at(words, at):
+                if at and (word in _TOLD_BEHIND or self._remarks.length_at(words, at)):
                     break  # In other words more could be passed over there.
                 for other in () if word in counting else self._alike.get(word, ()):
                     yield [*words[:at], other, *words[at + 1 :]]
@@ -167,6 +171,17 @@ class Repairs:
             )  # fmt: skip
             for base in self._verbs.bases(verb, "gerund" if form == "gerund" else "participle"):
                 yield [*tokens[:start], base, *tokens[start:at], *tokens[at + size + 1 :]]
+
+    def _with_subject(
+        self, tokens: list[str], mentions: Sequence[Sequence[Mention]]
+    ) -> Iterator[list[str]]:
+        """`mr brown is back and wants the paper`: who wants it is said once more."""
+        for person in mentions[0] if mentions else ():
+            if not self._kinds(person) <= {"person"} or not person.candidates:
+                continue
+            for at in range(person.end + 1, len(tokens) - 1):
+                if tokens[at] in ("and", "but") and tokens[at + 1] in _WANTING:
+                    yield [*tokens[: at + 1], *tokens[: person.end], *tokens[at + 1 :]]
 
     # Corrections
 

@@ -6,7 +6,8 @@ import re
 from collections.abc import Collection, Sequence
 
 SUBJECTS = frozenset(
-    ("i", "we", "you", "they", "he", "she", "it", "that", "this", "there", "people", "everybody", "my", "our")
+    ("i", "we", "you", "they", "he", "she", "it", "that", "this", "there", "people", "everybody",
+     "everyone", "somebody", "someone", "nobody", "my", "our")
 )  # fmt: skip
 """Words that a sentence about something else can begin with, besides what has a name."""
 BE_OR_DO = frozenset(

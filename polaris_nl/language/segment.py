@@ -86,6 +86,7 @@ class Segmenter:
             **dict.fromkeys(common.fillers, FILLER_COST),
         }
         self._longest = max(map(len, (*self._marks, *self._fillers)), default=0)
+        self._latest: tuple[tuple[str, ...], list[list[Clause]]] | None = None
 
     def cut(self, tokens: Sequence[str], mentions: Sequence[Sequence[Mention]]) -> list[Cut]:
         """The best ways to cut tokens, cheapest first."""
@@ -93,11 +94,7 @@ class Segmenter:
         best: list[dict[Mode, list[_Path]]] = [{} for _ in range(size + 1)]
         best[0]["plain"] = [(0.0, 0, ())]
         counter = 0
-        known: Fitting = {}
-        clauses = [
-            [] if token in (BREAK, COMMA) else list(self._clauses.at(tokens, at, mentions, known))
-            for at, token in enumerate(tokens)
-        ]
+        clauses = self._clauses_in(tokens, mentions)
         for at in range(size):
             if not best[at]:
                 continue
@@ -121,12 +118,30 @@ class Segmenter:
     ) -> tuple[str, ...]:
         """Tokens without what is only told behind them: "... it's cold in there"."""
         background = self._fragments.background
-        starts = [*background.remarks(tokens)]
+        starts = [*background.remarks(tokens, mentions)]
         if not starts:
             return tuple(tokens)
-        clauses = [[*self._clauses.at(tokens, at, mentions)] for at in range(len(tokens))]
-        told = (at for at in starts if any(background.told_behind(tokens, at, clauses)))
+        clauses = self._clauses_in(tokens, mentions)
+        told = (at for at in starts if any(background.told_behind(tokens, at, mentions, clauses)))
         return tuple(tokens[: next(told, len(tokens))])
+
+    def _clauses_in(
+        self, tokens: Sequence[str], mentions: Sequence[Sequence[Mention]]
+    ) -> list[list[Clause]]:
+        """The clauses that start at each position; those of the latest tokens are remembered."""
+        key = tuple(tokens)
+        if self._latest is None or self._latest[0] != key:
+            known: Fitting = {}
+            self._latest = (
+                key,
+                [
+                    []
+                    if token in (BREAK, COMMA)
+                    else list(self._clauses.at(tokens, at, mentions, known))
+                    for at, token in enumerate(tokens)
+                ],
+            )
+        return self._latest[1]
 
     def _marks_at(self, tokens: Sequence[str], at: int) -> Iterator[tuple[int, Mark]]:
         if tokens[at] == BREAK:

@@ -65,10 +65,10 @@ class Statements:
     ) -> tuple[Interpretation, Dialogue]:
         """Reads tokens as steps of the program."""
         cuts = self._language.cuts(tokens)
-        for banned, reason in self._refused_phrases:
-            if any(tuple(tokens[at : at + len(banned)]) == banned for at in range(len(tokens))):
-                return self._language.refused(utterance, reason, (" ".join(banned),)), dialogue
         good = _understood(cuts)
+        for banned, reason in self._refused_phrases:
+            if _says(tokens, banned) and not (good and _only_told(good[0], banned)):
+                return self._language.refused(utterance, reason, (" ".join(banned),)), dialogue
         mendable = len(tokens) <= MOST_REPAIRED
         mentions = self._language.mentions(tokens) if mendable else []
         best = None
@@ -228,6 +228,18 @@ def _only_conditions(cut: Cut) -> bool:
     roles = {item.role for item in cut.items}
     waits = not marks & {"until", "else"} and roles <= {"condition", "mark", "fact"}
     return bool(marks & {"if", "unless"}) and waits
+
+
+def _says(tokens: Sequence[str], phrase: Sequence[str]) -> bool:
+    """Whether words stand somewhere in a row."""
+    size = len(phrase)
+    return any(tuple(tokens[at : at + size]) == tuple(phrase) for at in range(len(tokens)))
+
+
+def _only_told(cut: Cut, phrase: Sequence[str]) -> bool:
+    """Whether words are in nothing that is asked for: "she always forgets, so ..."."""
+    asked = (item.text.split() for item in cut.items if item.role not in ("topic", "fact"))
+    return not any(_says(words, phrase) for words in asked)
 
 
 def _only_tells(cut: Cut) -> bool:

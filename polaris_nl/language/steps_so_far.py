@@ -7,6 +7,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field, replace
 
 from polaris_nl.language.goal_relations import (
+    ROBOT_AT,
     SEPARATE,
     SOUGHT,
     flat,
@@ -153,7 +154,7 @@ class StepsSoFar:
         """Being at a place that is only named: "the cup to the counter, then the laundry room"."""
         with suppress(Misfit, Unclear):
             places = self.resolver.meant(mention, ("region",), self.scope).entities
-            return tuple(Literal("robot-at", (place,)) for place in places[:1])
+            return tuple(Literal(ROBOT_AT, (place,)) for place in places[:1])
         return ()
 
     def leave_out(self, item: Item) -> None:
@@ -168,6 +169,17 @@ class StepsSoFar:
         if kept == goals:
             raise Misfit(f"{item.mention.text} is not among what was asked for.")
         self.steps[-1] = replace(self.steps[-1], goals=kept)
+
+    def go_with(self, goals: tuple[Goal, ...], text: str) -> None:
+        """Holding something where the robot goes: "be in the kitchen with the cup in your hand".
+
+        Raises:
+            Misfit: the robot was not to go anywhere.
+        """
+        before = flat(self.steps[-1].goals) if self.steps and not self.new_step else []
+        if not any(x.predicate == ROBOT_AT for x in before):
+            raise Misfit(f'What should I do "{text}"? Say it with "and", as a goal of its own.')
+        self.join(goals)
 
     def check_places(self, goals: Sequence[Goal]) -> None:
         """Looks for a second place in one breath: "bring the cup on the table to the sink".

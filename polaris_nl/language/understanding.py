@@ -195,12 +195,22 @@ class Understanding:
         if told is not None:
             return self._told(utterance, told), dialogue
         asked, dialogue = dialogue.asked, replace(dialogue, asked=None)
-        core = self._corrections.core(tokens)
+        core, kept = (
+            self._corrections.core(tokens),
+            self._segmenter.before_remark(tokens, self.mentions(tokens)),
+        )
+        if len(kept) < len(tokens):
+            # "Undo that, she's asleep", "to mr brown instead, the lady has eaten".
+            told = self._commands.meant(kept)
+            if told is not None and not _REPLIES.intersection(told.commands):
+                return self._told(utterance, told), dialogue
+            without = self._corrections.core(kept)
+            core = without if without.strength else core
         if core.strength:
             kept = self._segmenter.before_remark(core.tokens, self.mentions(core.tokens))
             core = replace(core, tokens=kept)
         told = self._commands.meant(core.words) if core.tokens != tuple(bare) else None
-        if told is not None and told.commands[0] not in ("yes", "no"):
+        if told is not None and not _REPLIES.intersection(told.commands):
             return self._told(utterance, told), dialogue
         contrasted = contrast_asked(self, utterance, self._asking, tokens, program, dialogue)
         if contrasted is not None:
@@ -312,6 +322,7 @@ class Understanding:
 
 _KEEPING = ("help", "repeat", "read-program", "read-plan", "status", "yes")
 """Commands after which an open question can still be answered."""
+_REPLIES = frozenset(("yes", "no"))
 _COMMAND_SAYS = {
     "stop": "Stopping.",
     "pause": "Pausing.",

@@ -1,4 +1,4 @@
-"""Reads the utterance suite of `phenomena/` and `held_out/`, and judges how a wording comes out.
+"""Reads the utterance suite of `phenomena/` and `held_out/`.
 
 Both folders have a YAML file for each phenomenon. A file is a list of `cases` (and may set `world`):
 
@@ -27,44 +27,26 @@ from __future__ import annotations
 
 import itertools
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import yaml
 
-from polaris_nl.automaton.automaton import START, Automaton
-from polaris_nl.language.interpretation import Interpretation
 from polaris_nl.model.check import formula_faults
 from polaris_nl.model.data import shipped_worlds
 from polaris_nl.model.domain import KIND
-from polaris_nl.model.evaluate import instances_of
-from polaris_nl.model.formula import (
-    And,
-    Formula,
-    Imply,
-    Literal,
-    Quantified,
-    literals_in,
-    parse_formula,
-)
+from polaris_nl.model.formula import Formula, Literal, literals_in, parse_formula
 from polaris_nl.model.world import World
 from polaris_nl.model.world_file import read_world
 
-from .reader import OUTCOMES, Talk, in_form, language_of
+from .phenomena_steps import Step, normal, ordered
+from .reader import OUTCOMES, in_form
 
 FOLDERS = (Path(__file__).parent / "phenomena", Path(__file__).parent / "held_out")
 FORMS = ("typed", "spoken")
-VERDICTS = ("right", "asked", "refused", "wrong")
-"""`wrong`: another program, a change where none was wanted, another command or another query, or a
-command nobody gave that does harm. `asked` and `refused`: nothing happens, though something else than
-this question or this refusal was wanted; an answer or a harmless command counts as `refused`.
-"""
-CHANGING = {"new", "undo", "redo", "run", "stop", "pause", "resume", "quit", "save", "load"}
-"""Commands that do harm when nobody gave them."""
-
 CASE_FIELDS = {
     "name", "world", "given", "wordings", "forms", "expect", "checkpoints", "transitions", "either",
     "command", "options", "unknown", "query", "partial",
@@ -74,15 +56,6 @@ CHECKPOINT_FIELDS = {"label", "name", "goals", "may_split"}
 TRANSITION_FIELDS = {"from", "to", "when"}
 QUERY_FIELDS = {"kind", "when", "entity", "literal"}
 ONLY_WITH = {"command": "command", "options": "question", "unknown": "refused", "query": "answer"}
-
-
-class Step(NamedTuple):
-    """A checkpoint with what leads to it and what comes after it; comparable, without ids."""
-
-    when: frozenset[str]
-    goals: frozenset[str]
-    name: str
-    then: tuple[Step, ...]
 
 
 @dataclass(frozen=True)
@@ -99,17 +72,6 @@ class PhenomenonCase:
     expect: tuple[str, ...]
     programs: tuple[tuple[Step, ...], ...] = field(repr=False)
     wanted: Mapping[str, Any] = field(hash=False, repr=False)
-
-
-@dataclass(frozen=True)
-class Verdict:
-    """How a wording came out in a form, and why it isn't right."""
-
-    case: PhenomenonCase
-    wording: str
-    form: str
-    verdict: str
-    why: str = ""
 
 
 @cache
@@ -175,158 +137,18 @@ def cases_in(content: Any, phenomenon: str, held_out: bool = False) -> Iterator[
             raise ValueError(f"{phenomenon}: {name}: {fault}") from fault
 
 
-def judge(case: PhenomenonCase, wording: str, form: str) -> Verdict:
-    """Says a wording in a form, after what is given, and compares what comes of it."""
-    talk = Talk(language_of(case.world))
-    for utterance in in_form(case.given, form):
-        talk.say(utterance)
-    before = talk.program
-    (text,) = in_form([wording], form)
-    verdict, why = _verdict(case, talk.say(text), before, talk.program)
-    return Verdict(case, wording, form, verdict, why)
-
-
-def judge_all(cases: Iterable[PhenomenonCase]) -> Iterator[Verdict]:
-    """Every wording of some cases in each of its forms."""
-    for case in cases:
-        for wording, form in itertools.product(case.wordings, case.forms):
-            yield judge(case, wording, form)
-
-
-def tally(verdicts: Iterable[Verdict]) -> dict[str, Counter[str]]:
-    """How many verdicts of each sort there are, phenomenon by phenomenon."""
-    found: dict[str, Counter[str]] = {}
-    for verdict in verdicts:
-        found.setdefault(verdict.case.phenomenon, Counter())[verdict.verdict] += 1
-    return found
-
-
-def tree_of(program: Automaton, world: World) -> tuple[Step, ...] | None:
-    """A program as steps, in an order of its own; None where it is no tree rooted in the start."""
-    if len(program.transitions) != len(program.checkpoints) - 1:
-        return None
-    if len(program.subtree(START)) != len(program.checkpoints):
-        return None
-
-    def steps(checkpoint: str) -> tuple[Step, ...]:
-        return _ordered(
-            Step(
-                frozenset(map(str, t.when)),
-                normal(program.checkpoints[t.target].goals, world),
-                program.checkpoints[t.target].name,
-                steps(t.target),
-            )
-            for t in program.outgoing(checkpoint)
-        )
-
-    return steps(START)
-
-
-def same(wanted: Sequence[Step], found: Sequence[Step]) -> bool:
-    """Whether two lists of steps are one, in any order; an empty name fits all names."""
-    if len(wanted) != len(found):
-        return False
-    if not wanted:
-        return True
-    first, *others = wanted
-    return any(
-        (first.when, first.goals) == (step.when, step.goals)
-        and first.name in ("", step.name)
-        and same(first.then, step.then)
-        and same(others, [*found[:i], *found[i + 1 :]])
-        for i, step in enumerate(found)
-    )
-
-
-def normal(goals: Iterable[Formula], world: World) -> frozenset[str]:
-    """Goals without `for all` and without kinds; conditions that depend on facts stay."""
-    return frozenset(str(part) for goal in goals for part in _parts(goal, world))
-
-
-def _verdict(
-    case: PhenomenonCase, meant: Interpretation, before: Automaton, after: Automaton
-) -> tuple[str, str]:
-    heard = f"{meant.outcome}: {meant.say}"
-    tree = tree_of(after, world_of(case.world))
-    fits = tree is not None and any(same(program, tree) for program in case.programs)
-    if meant.outcome == "applied":
-        if "applied" in case.expect and fits:
-            return "right", ""
-        return "wrong", f"{heard} {described(tree)}"
-    if after != before and "applied" in case.expect and meant.outcome == "question":
-        return "asked", heard
-    if after != before and not (case.wanted.get("partial") and meant.partial and fits):
-        return "wrong", f"{heard} {described(tree)}"
-    if meant.outcome in case.expect:
-        return _detail(case.wanted, meant, heard)
-    if meant.outcome == "question":
-        return "asked", heard
-    if meant.command in CHANGING:
-        return "wrong", f"{meant.command}, {heard}"
-    return "refused", heard
-
-
-def _detail(wanted: Mapping[str, Any], meant: Interpretation, heard: str) -> tuple[str, str]:
-    if meant.outcome == "question" and "options" in wanted:
-        offered = meant.question.options if meant.question else ()
-        if not _offers(wanted["options"], offered):
-            return "asked", f"{heard} {offered}"
-    if meant.outcome == "refused" and meant.refusal:
-        named = {word for text in meant.refusal.unknown for word in text.lower().split()}
-        missing = set(wanted.get("unknown", ())) - named
-        if missing:
-            return "refused", f"{heard} It does not name {', '.join(sorted(missing))}."
-    if meant.command and meant.command not in _list(wanted.get("command", meant.command)):
-        return "wrong", f"{meant.command}, {heard}"
-    if meant.outcome == "answer" and "query" in wanted:
-        query = meant.query
-        found = {
-            "kind": query and query.kind,
-            "when": sorted(map(str, query.when)) if query else [],
-            "entity": query and query.entity,
-            "literal": str(query.literal) if query else "",
-        }
-        for key, value in wanted["query"].items():
-            if found[key] != (sorted(value) if key == "when" else value):
-                return "wrong", f"{heard} {key}: {found[key]}"
-    return "right", ""
-
-
-def _offers(wanted: Sequence[str], offered: Sequence[str]) -> bool:
-    if len(wanted) != len(offered):
-        return False
-    return any(
-        all(
-            set(w.lower().split()) <= set(o.lower().split()) for w, o in zip(wanted, x, strict=True)
-        )
-        for x in itertools.permutations(offered)
-    )
-
-
-def described(steps: Sequence[Step] | None) -> str:
-    """Steps on one line, for a person."""
-    if steps is None:
-        return "no tree"
-    parts = []
-    for step in steps:
-        when = f"[{' '.join(sorted(step.when))}] " if step.when else ""
-        then = f" > {described(step.then)}" if step.then else ""
-        parts.append(f"{when}{' '.join(sorted(step.goals)) or '.'}{then}")
-    return parts[0] if len(parts) == 1 else f"{{{' | '.join(parts)}}}"
-
-
 def _case(item: Mapping[str, Any], phenomenon: str, held_out: bool) -> PhenomenonCase:
     _only(item, CASE_FIELDS)
     if item["world"] not in shipped_worlds():
         raise ValueError(f"which world is {item['world']}?")
     world = world_of(item["world"])
-    expect = _list(item.get("expect", "applied"))
+    expect = listed(item.get("expect", "applied"))
     if not expect or set(expect) - set(OUTCOMES):
         raise ValueError(f"expect is one of {', '.join(OUTCOMES)}")
-    forms = _list(item.get("forms", FORMS))
+    forms = listed(item.get("forms", FORMS))
     if not forms or set(forms) - set(FORMS):
         raise ValueError(f"forms are {', '.join(FORMS)}")
-    wordings = _list(item.get("wordings", ()))
+    wordings = listed(item.get("wordings", ()))
     if not wordings or not all(isinstance(w, str) and w.strip() for w in wordings):
         raise ValueError("no wordings")
     for key, outcome in ONLY_WITH.items():
@@ -344,7 +166,7 @@ def _case(item: Mapping[str, Any], phenomenon: str, held_out: bool) -> Phenomeno
         item["name"],
         held_out,
         item["world"],
-        _list(item.get("given", ())),
+        listed(item.get("given", ())),
         wordings,
         forms,
         expect,
@@ -412,7 +234,7 @@ def _tree(
             name = checkpoint.get("name", "") if i == 0 else ""
             then = (Step(when if i == 0 else frozenset(), groups[i], name, then),)
         steps.extend(then)
-    return _ordered(steps)
+    return ordered(steps)
 
 
 def _cuts(checkpoint: Mapping[str, Any], world: World) -> list[tuple[frozenset[str], ...]]:
@@ -440,36 +262,6 @@ def _formula(text: str, world: World) -> Formula:
     return formula
 
 
-def _parts(goal: Formula, world: World) -> Iterator[Formula]:
-    if isinstance(goal, And):
-        for part in goal.parts:
-            yield from _parts(part, world)
-    elif isinstance(goal, Quantified) and goal.quantifier == "forall":
-        for body in instances_of(goal, world):
-            yield from _parts(body, world)
-    elif isinstance(goal, Imply):
-        conditions = _conditions(goal.condition)
-        kinds = [c for c in conditions if isinstance(c, Literal) and c.predicate == KIND]
-        if all(world.is_kind(*k.args) is k.positive for k in kinds):
-            rest = sorted(str(c) for c in conditions if c not in kinds)
-            for part in _parts(goal.conclusion, world):
-                yield parse_formula(f"(imply (and {' '.join(rest)}) {part})") if rest else part
-    else:
-        yield goal
-
-
-def _conditions(formula: Formula) -> list[Formula]:
-    if isinstance(formula, And):
-        return [c for part in formula.parts for c in _conditions(part)]
-    return [formula]
-
-
-def _ordered(steps: Iterable[Step]) -> tuple[Step, ...]:
-    return tuple(
-        sorted(steps, key=lambda s: (sorted(s.when), sorted(s.goals), s.name, str(s.then)))
-    )
-
-
 def _without_wordings(case: PhenomenonCase) -> tuple[Any, ...]:
     rest = {k: v for k, v in case.wanted.items() if k != "wordings"}
     return case.world, case.given, case.forms, case.expect, case.programs, rest
@@ -480,5 +272,6 @@ def _only(item: Mapping[str, Any], fields: set[str]) -> None:
         raise ValueError(f"unknown fields {', '.join(sorted(strange))}")
 
 
-def _list(value: Any) -> tuple[Any, ...]:
+def listed(value: Any) -> tuple[Any, ...]:
+    """What is given as one or as a list of them."""
     return (value,) if isinstance(value, str) else tuple(value)

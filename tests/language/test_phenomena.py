@@ -13,7 +13,8 @@ from pathlib import Path
 import pytest
 
 from .dialogues_reader import all_dialogues, play
-from .phenomena_reader import all_phenomena, judge_all
+from .phenomena_judging import judge_all
+from .phenomena_reader import all_phenomena
 
 HERE = Path(__file__).parent
 

@@ -9,17 +9,9 @@ import pytest
 
 from polaris_nl.model.formula import parse_formula
 
-from .phenomena_reader import (
-    PhenomenonCase,
-    all_phenomena,
-    cases_in,
-    judge,
-    judge_all,
-    normal,
-    same,
-    tally,
-    world_of,
-)
+from .phenomena_judging import judge, judge_all, tally
+from .phenomena_reader import PhenomenonCase, all_phenomena, cases_in, world_of
+from .phenomena_steps import normal, same
 
 HOME = {"name": "home", "world": "care-home", "wordings": ["Go home."]}
 TO_HOME = {**HOME, "checkpoints": [["(robot-at home)"]]}
