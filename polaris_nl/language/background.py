@@ -33,6 +33,8 @@ _BEHIND = (BREAK, COMMA, "and", "then", "but", "please", "so", "if", "when", "on
 _MOST_FOR = 5
 _MOST_NOUN = 2
 _MOST_TOLD = 16
+_MOST_SUBJECT = 6
+"""Words of a subject that isn't known: "the last thing i want tonight is ..."."""
 _MOST_OCCASION = 7
 _LEAST_LATE = 3
 """Words that a sentence behind a request has at least."""
@@ -101,7 +103,8 @@ class Background:
         first = start if start > at + opening else at + 1
         inside = ((i, c) for i, there in enumerate(clauses) if i >= first for c in there)
         meant = any(
-            c.form == "base" and (c.kind == "goal" or _leans(c, tokens[i])) for i, c in inside
+            c.form == "base" and (c.kind in ("goal", "small") or _leans(c, tokens[i]))
+            for i, c in inside
         )
         if not meant and not any(c.end > at + 2 for c in clauses[at]):
             yield at, size
@@ -156,15 +159,20 @@ class Background:
             subjects.append(at + 1)
         if any(c.kind == "goal" for c in clauses[at]):
             return
-        if not subjects and not _BEING & set(tokens[at + 1 : at + 4]):
+        far = _MOST_SUBJECT if tokens[at] in OWNED else 3
+        if not subjects and not _BEING & {*tokens[at + 1 : at + 1 + far]}:
             return
+        said_of = (m.end for m in mentions[at] if not (m.pronoun or m.quantifier))
+        is_subject = any({*tokens[e : e + 1]} & _BEING for e in said_of)
         for end in range(at + 3, min(at + _MOST_TOLD, len(tokens) - 1) + 1):
             if tokens[end - 1] in _CONDITIONS or tokens[end - 1] in _CORRECTING - {"not"}:
                 return
+            is_subject = is_subject and tokens[end - 1] not in ("and", COMMA, BREAK)
             if tokens[end] == _SO and self.asks(tokens, end + 1, clauses):
                 yield at, end + 1
                 return  # What is asked for behind it isn't told any more.
-            if any(_takes_up(c) for c in clauses[end]) and {*tokens[at:end]} & _BEING:
+            asked = self._requests.may_begin(tokens, end) and any(map(_takes_up, clauses[end]))
+            if asked and is_subject:
                 yield at, end
                 return
 

@@ -84,6 +84,7 @@ _LEADING_PAIRS = (
     ("after", "this"),
     ("after", "it"),
     ("of", "all"),
+    ("the", "end"),
     ("followed", "by"),
 )
 _PRONOUNS = frozenset(

@@ -75,6 +75,8 @@ class Lexicon:
             e.name for e in world.entities.values() if e.type in ("surface", "container")
         )
         """Where things can be."""
+        self.regions = frozenset(e.name for e in world.entities.values() if e.type == "region")
+        """Where the robot can be."""
         drafts: dict[tuple[str, ...], _Draft] = {}
         for entity in world.entities.values():
             for words, rank, kind in _phrases(entity):

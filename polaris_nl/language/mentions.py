@@ -25,6 +25,9 @@ _JOINERS = PhraseSet(
         ("plus",),
     )
 )
+_WITHIN = ("on", "in", "at", "inside")
+_OVER = ("over", "out", "down", "up", "through")
+"""Words before those that say where a thing is: "the table over in the canteen"."""
 _AGAIN = PhraseSet(
     (("to",), ("on",), ("in",), ("into",), ("onto",), ("at",), ("from",), ("either", "to"))
 )
@@ -151,12 +154,17 @@ class MentionFinder:
         inner = at + self._which.length_at(tokens, at)
         if tokens[at - 1] == "whatever" and tokens[at : at + 1] in (["is"], ("is",)):
             inner = at + 1
+        if tokens[inner : inner + 1] and tokens[inner] in _OVER and tokens[inner + 1 : inner + 2]:
+            inner += tokens[inner + 1] in _WITHIN
         origin = self._from.length_at(tokens, inner)
-        if not origin and inner < len(tokens) and tokens[inner] in ("on", "in", "at", "inside"):
+        if not origin and inner < len(tokens) and tokens[inner] in _WITHIN:
             origin = 1
         for place in self._single(tokens, inner + origin) if origin else ():
             if mention.place is None and (not place.pronoun or place.pronoun == "there"):
                 yield replace(_longer(tokens, mention, place.end), place=place)
+            elif mention.place is not None and self._is_region(place):
+                # "On the table in the kitchen": where its place is, is known.
+                yield replace(_longer(tokens, mention, place.end), beside=True)
         word = tokens[inner] if inner < len(tokens) else ""
         every = bool(mention.quantifier) and tokens[at - 1] in THINGS
         if word in self.adjectives and (inner > at or every):
@@ -179,7 +187,11 @@ class MentionFinder:
     def _is_one(self, mention: Mention) -> bool:
         """Whether it needn't be told from others, and nothing can stand on it."""
         named = {c.entity for c in mention.candidates}
-        return len(named) == 1 and not named & self._lexicon.places
+        return len(named) == 1 and not mention.place and not named & self._lexicon.places
+
+    def _is_region(self, place: Mention) -> bool:
+        named = {c.entity for c in place.candidates}
+        return bool(named) and named <= self._lexicon.regions
 
     def _of(self, tokens: Sequence[str], mention: Mention) -> Iterator[Mention]:
         """`the table of the resident`."""

@@ -60,6 +60,9 @@ def steps_of(
     return reader.done.steps, reader.done.scope
 
 
+MISSING_VERB = 'I miss a verb; say for example "bring" before it.'
+
+
 class _Reader:
     """Walks over items with the conditions that wait for their goals."""
 
@@ -337,12 +340,16 @@ class _Reader:
             self.done.steps[-1] = replace(previous, when=when, role="condition")
 
     def _goal(self, item: Item) -> None:
+        leaning = item.clause is not None and item.clause.kind == "ellipsis"
+        told = self.items[self.at - 2].mention if leaning and self.at > 1 else None
+        if told is not None and not told.candidates:
+            raise Misfit(MISSING_VERB)  # "Nobody likes the carpet in the hall" is only told.
         goals = self.done.literals(item, condition=False)
-        if item.clause is not None and item.clause.kind == "ellipsis":
+        if item.clause is not None and leaning:
             self.done.check_places(goals)
             leans = any(g.predicate == item.clause.predicate for g in flat(self._latest))
             if item is self.items[0] and says_only_names(item.clause) and not leans:
-                raise Misfit('I miss a verb; say for example "bring" before it.')
+                raise Misfit(MISSING_VERB)
             if item.text.split()[0] in WITH:
                 self.done.go_with(goals, item.text)
                 return

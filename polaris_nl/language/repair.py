@@ -92,7 +92,7 @@ class Repairs:
     def _all(self, tokens: list[str], mentions: Sequence[Sequence[Mention]]) -> Iterator[list[str]]:
         bare = self._bare(tokens)
         yield bare
-        yield from self._active(bare)
+        yield from self._active(bare, mentions if len(bare) == len(tokens) else ())
         yield from self._with_subject(tokens, mentions)
         yield from self._for_each(tokens, mentions)
         yield from self._corrected(tokens, mentions, self._all_markers)
@@ -158,7 +158,9 @@ class Repairs:
             at += size or 1
         return found
 
-    def _active(self, tokens: Sequence[str]) -> Iterator[list[str]]:
+    def _active(
+        self, tokens: Sequence[str], mentions: Sequence[Sequence[Mention]]
+    ) -> Iterator[list[str]]:
         """`the fridge needs opening`, `the tray must be taken to the table`: as an imperative."""
         for at in range(len(tokens)):
             size = self._needing.length_at(tokens, at)
@@ -169,6 +171,9 @@ class Repairs:
             start = next(
                 (i + 1 for i in range(at - 1, -1, -1) if tokens[i] == BREAK or tokens[i] in self._starts), 0
             )  # fmt: skip
+            # "Everything that is there should be moved": the longest name before it.
+            named = (i for i, there in enumerate(mentions) if any(m.end == at for m in there))
+            start = min(next(named, start), start)
             for base in self._verbs.bases(verb, "gerund" if form == "gerund" else "participle"):
                 yield [*tokens[:start], base, *tokens[start:at], *tokens[at + size + 1 :]]
 

@@ -46,6 +46,7 @@ _NO_VERBS = frozenset(
 """Words that goals can begin with and that are no verbs, or stand in anything that is told."""
 _BEFORE_VERBS = SMALL | BE_OR_DO | {"not", "might", "should", "for", "very", "so", "still", "too"}
 """Words behind which a verb is no request: "likes to read", "is open", "a rest"."""
+_PEOPLE = frozenset(("i", "we", "they", "he", "she"))
 _BEFORE_OTHERS = _BEFORE_VERBS | SUBJECTS | {"got"}
 _OBJECTS = frozenset(
     ("the", "a", "an", "some", "your", "his", "her", "him", "our", "their", "me", "us", "them")
@@ -78,7 +79,8 @@ class Requests:
         """Whether a request may begin with the word at a position, which isn't the first."""
         before, word = words[at - 1 : at + 1]
         if word in self._verbs:
-            return before not in _BEFORE_VERBS
+            # Nothing is asked of a thing that isn't named: "they leave things open".
+            return before not in _BEFORE_VERBS | _PEOPLE and at + 1 < len(words)
         if word in _NO_REQUEST or before in _BEFORE_OTHERS or _FORM.fullmatch(word):
             return False
         behind = at + 1

@@ -191,24 +191,35 @@ class Understanding:
         program: Automaton,
         dialogue: Dialogue,
     ) -> tuple[Interpretation, Dialogue]:
+        """What is meant by all of the tokens, or else by those before what is only told."""
+        kept = self._segmenter.before_remark(tokens, self.mentions(tokens))
+        less = kept, strip(kept, self.fillers)
+        if len(kept) == len(tokens):
+            return self._whole(utterance, tokens, bare, program, dialogue)
+        if self._corrections.core(kept).strength > self._corrections.core(tokens).strength:
+            # "To Mr Brown instead, she has eaten" is nothing on top.
+            return self._whole(utterance, *less, program, dialogue)
+        meant, after = self._whole(utterance, tokens, bare, program, dialogue)
+        if meant.outcome == "refused":
+            again, then = self._whole(utterance, *less, program, dialogue)
+            if again.outcome != "refused" and again.command not in _SAID_ALONE:
+                return again, then
+        return meant, after
+
+    def _whole(
+        self,
+        utterance: str,
+        tokens: Sequence[str],
+        bare: Sequence[str],
+        program: Automaton,
+        dialogue: Dialogue,
+    ) -> tuple[Interpretation, Dialogue]:
+        """What is meant by all of the tokens."""
         told = self._commands.meant(tokens)
         if told is not None:
             return self._told(utterance, told), dialogue
         asked, dialogue = dialogue.asked, replace(dialogue, asked=None)
-        core, kept = (
-            self._corrections.core(tokens),
-            self._segmenter.before_remark(tokens, self.mentions(tokens)),
-        )
-        if len(kept) < len(tokens):
-            # "Undo that, she's asleep", "to mr brown instead, the lady has eaten".
-            told = self._commands.meant(kept)
-            if told is not None and not _REPLIES.intersection(told.commands):
-                return self._told(utterance, told), dialogue
-            without = self._corrections.core(kept)
-            core = without if without.strength else core
-        if core.strength:
-            kept = self._segmenter.before_remark(core.tokens, self.mentions(core.tokens))
-            core = replace(core, tokens=kept)
+        core = self._corrections.core(tokens)
         told = self._commands.meant(core.words) if core.tokens != tuple(bare) else None
         if told is not None and not _REPLIES.intersection(told.commands):
             return self._told(utterance, told), dialogue
@@ -216,6 +227,11 @@ class Understanding:
         if contrasted is not None:
             return contrasted
         changed = self._corrections.corrected(utterance, core, program, dialogue)
+        if core.strength and (changed is None or changed[0].outcome != "applied"):
+            kept = self._segmenter.before_remark(core.tokens, self.mentions(core.tokens))
+            if len(kept) < len(core.tokens):
+                core = replace(core, tokens=kept)
+                changed = self._corrections.corrected(utterance, core, program, dialogue) or changed
         for part in dict.fromkeys((tuple(strip(tokens, ())), tuple(bare), core.tokens)):
             changed = changed or self.edited(utterance, part, program, dialogue)
         if changed is not None:
@@ -323,6 +339,8 @@ class Understanding:
 _KEEPING = ("help", "repeat", "read-program", "read-plan", "status", "yes")
 """Commands after which an open question can still be answered."""
 _REPLIES = frozenset(("yes", "no"))
+_SAID_ALONE = _REPLIES | {"run", "resume", "new", "load", "save", "quit"}
+"""Commands that nobody gives a reason for: "let's get going or we'll miss it" is said to others."""
 _COMMAND_SAYS = {
     "stop": "Stopping.",
     "pause": "Pausing.",

@@ -77,6 +77,32 @@ LADY = "bring the lady her book"
         ("dinner-party", "is the door of the fridge open now", "answer: is-it (open fridge)"),
         ("care-home", "if she's home go home", "start [when (person-in resident home): (robot-at home)]"),
         ("dinner-party", "if the guest isn't the kitchen go home", "refused"),
+        (
+            "care-home",
+            "go to the kitchen with the red cup in your hand",
+            "start [(holding red-cup) & (robot-at kitchen)]",
+        ),
+        ("care-home", "be in the kitchen with the cup", "start [(holding cup) & (robot-at kitchen)]"),
+        (
+            "care-home",
+            "give the lady her book with the glasses",
+            "start [(has resident book) [(has resident glasses)]]",
+        ),
+        (
+            "dinner-party",
+            "i'm cleaning so everything on the shelf must come to the countertop",
+            "start [(forall (?x - object) (imply (at ?x shelf) (at ?x countertop)))]",
+        ),
+        (
+            "dinner-party",
+            "move everything on the coffee table in the living room to the sideboard",
+            "start [(forall (?x - object) (imply (at ?x coffee-table) (at ?x sideboard)))]",
+        ),
+        (
+            "dinner-party",
+            "put the cup on the counter and if it's clean after that put it in the cupboard",
+            "start [(at cup countertop) [when (is-clean cup): (in cup cupboard)]]",
+        ),
     ],
 )  # fmt: skip
 def test_it_is_understood_as_a_whole(world: str, said: str, meant: str) -> None:

@@ -28,6 +28,15 @@ def meant(world: str, said: str, *after: str) -> str:
         "take tom the newspaper would you but do be careful",
         "hi there take tom the newspaper people are waiting",
         "i've had an idea take tom the newspaper he'll find it useful",
+        "take tom the newspaper the bingo's over",
+        "take tom the newspaper or he gets bored",
+        "take tom the newspaper so the old man can read",
+        "take tom the newspaper before the room gets dark",
+        "take tom the newspaper while i look for the other one",
+        "he forgets it every single day so take tom the newspaper",
+        "the last thing i want is that he has nothing to read so take tom the newspaper",
+        "the newspaper is in the way take it to tom",
+        "tom has lost his and needs the newspaper",
     ],
 )
 def test_remarks_behind_a_request_are_passed_over(said: str) -> None:
@@ -51,6 +60,11 @@ def test_remarks_behind_a_request_are_passed_over(said: str) -> None:
         "put the cup on the desk she is waiting the book to tom",
         "that has gone delete the part where you go home",
         "that has gone to leak the park there you go home",
+        "go home when the lady is dizzy",
+        "do not go home before the soup is hot",
+        "nobody likes the new carpet in the hall",
+        "where is the cup i can't find it",
+        "i am cleaning so everything in the lamp must come to the desk",
     ],
 )
 def test_what_asks_for_more_is_no_remark(said: str) -> None:
@@ -75,10 +89,29 @@ def test_a_remark_that_wants_something_known_asks_for_it() -> None:
             "bring miss green her book",
             "(has mr-brown book)",
         ),
+        (
+            "take it to tom instead she's eaten already",
+            "bring miss green her book",
+            "(has mr-brown book)",
+        ),
     ],
 )
 def test_a_correction_can_say_why(said: str, after: str, expected: str) -> None:
     assert meant("care-home", said, after) == f"start [{expected}]"
+
+
+@pytest.mark.parametrize(
+    ("said", "expected"),
+    [
+        ("oh undo that she's fast asleep", "start"),
+        ("pause for a moment someone's at the door", "command: pause"),
+        ("stop stop the kid's in front of you", "command: stop"),
+        ("right then let's get going or we'll miss it", "refused"),
+        ("yes she's coming tomorrow", "refused"),
+    ],
+)
+def test_a_command_can_say_why_but_none_that_starts_or_agrees(said: str, expected: str) -> None:
+    assert meant("care-home", said, "bring miss green her book").rstrip() == expected
 
 
 @pytest.mark.parametrize(
