@@ -7,7 +7,6 @@ suites. What isn't there is skipped, and said so.
 from __future__ import annotations
 
 import argparse
-import importlib
 import itertools
 import json
 import re
@@ -21,9 +20,11 @@ from typing import Any
 from polaris_nl.language.understanding import Understanding
 from polaris_nl.model.formula import Literal
 from polaris_nl.model.world import World
-from tests.language import corpora, corpora_judging
+from tests.language import corpora, corpora_judging, dialogues_reader
 from tests.language.corpora import Annotated, Sentence
 from tests.language.corpora_judging import Judgement, Reading
+from tests.language.phenomena_judging import judge_all
+from tests.language.phenomena_reader import all_phenomena
 
 FORMS: Mapping[str, Callable[[str], str]] = {"typed": str, "speech": corpora.spoken}
 
@@ -229,22 +230,15 @@ def suites() -> tuple[dict[str, Counter[str]], list[str]]:
     skipped = []
     for title, judged in (("phenomena", _phenomena), ("dialogues", _dialogues)):
         try:
-            part = judged(importlib.import_module(f"tests.language.{title}_reader"))
-        except ModuleNotFoundError as error:
-            skipped.append(f"{title}: there is no {error.name}.")
-            continue
+            found.update(judged())
         except ValueError as fault:
             skipped.append(f"{title}: a case is not as it should be: {fault}")
-            continue
-        if not part:
-            skipped.append(f"{title}: there are no cases.")
-        found.update(part)
     return found, skipped
 
 
-def _phenomena(reader: Any) -> dict[str, Counter[str]]:
+def _phenomena() -> dict[str, Counter[str]]:
     found: dict[str, Counter[str]] = {}
-    for verdict in reader.judge_all(reader.all_phenomena()):
+    for verdict in judge_all(all_phenomena()):
         half = "held out" if verdict.case.held_out else "developed"
         found.setdefault(f"phenomena, {half}", Counter())[verdict.verdict] += 1
     return found
@@ -253,16 +247,16 @@ def _phenomena(reader: Any) -> dict[str, Counter[str]]:
 _AS_VERDICT = {"question": "asked", "refused": "refused"}
 
 
-def _dialogues(reader: Any) -> dict[str, Counter[str]]:
+def _dialogues() -> dict[str, Counter[str]]:
     """Verdicts on turns; on dialogues by their first turn that isn't right, and by whether any is wrong.
 
     A turn after one that failed often fails with it, since the program is not what it should be.
     """
     found: dict[str, Counter[str]] = {}
-    for folder, form in itertools.product(reader.FOLDERS, reader.FORMS):
+    for folder, form in itertools.product(dialogues_reader.FOLDERS, dialogues_reader.FORMS):
         half = "held out" if folder.endswith("held_out") else "developed"
-        for dialogue in reader.all_dialogues(folder):
-            turns = reader.play(dialogue, form)
+        for dialogue in dialogues_reader.all_dialogues(folder):
+            turns = dialogues_reader.play(dialogue, form)
             verdicts = ["right" if t.ok else _AS_VERDICT.get(t.outcome, "wrong") for t in turns]
             found.setdefault(f"turns, {half}", Counter()).update(verdicts)
             first = next((v for v in verdicts if v != "right"), "right")
