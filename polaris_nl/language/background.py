@@ -195,7 +195,13 @@ class Background:
         self, tokens: Sequence[str], at: int, mentions: Sequence[Sequence[Mention]]
     ) -> Iterator[Span]:
         """`... for the summer buffet`: what or whom something is for, where that is nothing known."""
-        if tokens[at] != _FOR or not {*tokens[at + 1 : at + 2]} & {*OWNED}:
+        if tokens[at] != _FOR:
+            return
+        if at + 1 < len(tokens) and tokens[at + 1].endswith("ing"):
+            if at + 2 == len(tokens) or tokens[at + 2] in _BEHIND:
+                yield at, at + 2  # "For folding".
+            return
+        if not {*tokens[at + 1 : at + 2]} & {*OWNED}:
             return
         for end in range(at + 3, min(at + _MOST_FOR, len(tokens)) + 1):
             last = tokens[end - 1]

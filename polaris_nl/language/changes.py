@@ -190,7 +190,11 @@ class Changes:
                 program, this, goals, incoming.when if incoming else ()
             )
             return [SetGoals(this, goals), *names], f"in {name}: {words}", [this]
-        return self._put(match, this, program, dialogue, named.get("l"))
+        if intent != "between":
+            return self._put(match, this, program, dialogue)
+        one, two = pair(intent, named, latest, program)
+        one, two = (two, one) if program.parent(one) == two else (one, two)
+        return self._put(match, one, program, dialogue, two)
 
     def _about(
         self, thing: object, alike: Sequence[Goal], program: Automaton, dialogue: Dialogue

@@ -43,7 +43,9 @@ def put_instead(
     if at is None:
         return None
     start = at + contrast.length_at(words, at)
-    named = language.mentions(words)[start] if start < len(words) else ()
+    mentions = language.mentions(words)
+    # "... not in the sink" says the preposition again.
+    named = [m for there in mentions[start : start + 2] for m in there]
     old = {c.entity for m in named if m.end == len(words) for c in m.candidates}
     if not old:
         return None

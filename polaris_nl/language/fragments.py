@@ -194,11 +194,13 @@ class Fragments:
         before = tuple(tokens[max(0, at - 3) : at])
         if not (before[-1:] and before[-1] in _LEADING) and before[-2:] not in _LEADING_PAIRS:
             return
-        for mention in mentions[at]:
+        # "To the nurse and then to the resident".
+        to = tokens[at] in ("to", "for") and at + 1 < len(tokens)
+        for mention in mentions[at + to]:
             end = mention.end
             ends = end == len(tokens) or tokens[end] in _ENDS
             ends = ends or any(self.background.told_behind(tokens, end, mentions, clauses))
-            if ends and mention.candidates:
+            if ends and mention.candidates and (not to or self._clauses.fits(mention, ("person",))):
                 yield Fragment(end, BARE_COST, "again", mention)
 
     def _topics(
@@ -217,8 +219,11 @@ class Fragments:
                 rest = _pronouns(tokens, mention.end, mentions)
                 if mention.quantifier == "all" and not _SEVERAL & rest:
                     continue  # "Everything on the desk, put it there" is about more than one thing.
-                goes_on = tokens[mention.end : mention.end + 1]
-                if rest and not _ONWARD.intersection(goes_on):
+                goes_on = tokens[mention.end : mention.end + 2]
+                # "Plate on the table please and once it's clean ..." asks for something already.
+                onward = _ONWARD | {"and"} if mention.place else _ONWARD
+                polite = "please" in goes_on[:1]
+                if rest and not onward.intersection(goes_on[polite : polite + 1]):
                     yield Fragment(mention.end, TOPIC_COST, "topic", mention)
 
     def _contrasts(

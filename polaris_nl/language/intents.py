@@ -102,7 +102,7 @@ SIGNATURES: Mapping[str, Signature] = {
     "else": Signature("edit", ("k",)),
     "condition": Signature("edit", ("k", "c")),
     "unconditional": Signature("edit", (), ("k",)),
-    "between": Signature("edit", ("k", "l", "g")),
+    "between": Signature("edit", ("g",), ("k", "l")),
     "at-start": Signature("edit", ("g",)),
     "before-that": Signature("edit", ("g",)),
     "before": Signature("edit", ("k", "g")),

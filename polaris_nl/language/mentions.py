@@ -115,7 +115,11 @@ class MentionFinder:
                 if step < len(tokens) and tokens[step] == "then":
                     return
                 step += _AGAIN.length_at(tokens, step) if alternative else 0
-            elif step == at and (word,) not in self._determiners:
+            elif step == at and not (
+                (word,) in self._determiners
+                # "Fork spoon and plate" are a list, too.
+                or (self._is_named(tokens, first.start) and self._is_named(tokens, step))
+            ):
                 return
             following = next(iter(self._single(tokens, step)), None)
             if following is None or following.pronoun:
@@ -127,6 +131,13 @@ class MentionFinder:
                 found = Mention(first.start, at, text, parts=tuple(parts), alternative=alternative)
                 yield found
                 yield from self._all_there(tokens, found)
+
+    def _is_named(self, tokens: Sequence[str], at: int) -> bool:
+        """Whether a thing's name begins at a position, without an article."""
+        return any(
+            not entry.plural and any(c.rank <= 1 for c in entry.candidates)
+            for _, entry in self._lexicon.at(tokens, at)
+        )
 
     def _all_there(self, tokens: Sequence[str], several: Mention) -> Iterator[Mention]:
         """`the cup and the plate on the table`: the place is that of each."""

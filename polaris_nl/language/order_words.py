@@ -8,7 +8,10 @@ from polaris_nl.language.clauses import Clause
 from polaris_nl.language.segment import Item
 
 FIRST = ("first", "first of all", "beforehand", "before that", "before")
-LATER = ("afterwards", "after that", "and afterwards", "later", "thereafter", "subsequently")
+LATER = (
+    "afterwards", "after that", "and afterwards", "later", "thereafter", "subsequently", "last", "at last",
+    "last of all", "right after it", "right after that", "straight after it", "right afterwards",
+)  # fmt: skip
 """Behind a goal, these make it a step of its own: "put it in and close it afterwards"."""
 BUT_FIRST = "but"
 """Begins what is to come before the goals in front of it: "close it, but first put the cup in it"."""
@@ -18,7 +21,7 @@ SEQUELS = ("then", "and then", "after that", "and after that", "afterwards", "an
 """Words in front of a condition that keep it where the program has come to."""
 INSTEAD = "in which case"
 """Behind "unless ...", says what is to be done then."""
-ENDING = ("finish", "end")
+ENDING = ("finish", "end", "conclude", "continue", "carry", "followed")
 """Begins a step of its own: "... and finish by shutting it"."""
 GOING_ON = (*SEQUELS[1:], "and finally", "and next", "finally", "after this")
 """Words after a condition that stands behind its goal: "bring it once she acknowledges, and then ..."."""
@@ -39,10 +42,18 @@ def without(item: Item) -> bool:
     return item.mark == "before" and item.text.startswith("without")
 
 
+def is_otherwise(items: Sequence[Item]) -> bool:
+    """Whether what is said ends with an "if she isn't" that stands behind its goal."""
+    marks = [i.mark for i in items]
+    return len(items) > 3 and marks[-1] == "else" and "else" not in marks[:-1]
+
+
 def all_postposed(items: Sequence[Item]) -> bool:
     """Whether goals and conditions alternate and a condition ends: "A if x and B if y"."""
     roles = [i.role for i in items if i.role in ("goal", "condition")]
     marks = [i.mark for i in items]
+    if is_otherwise(items):
+        roles.append("condition")  # "A if she is there and B if she isn't".
     if len(roles) < 4 or "until" in marks or "then" in marks:
         return False
     return (

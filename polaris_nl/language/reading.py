@@ -16,6 +16,7 @@ from polaris_nl.language.order_words import (
     WITH,
     all_postposed,
     goes_on,
+    is_otherwise,
     says_only_names,
     without,
 )
@@ -119,6 +120,8 @@ class _Reader:
             self.done.new_step = True
             self._sequel = item.mark == "then" and item.text in SEQUELS
             self._first = bool(self.done.steps) and item.text.split()[:1] == [BUT_FIRST]
+        elif item.mark == "else" and is_otherwise(self.items) and self._postposed:
+            self.done.steps[-1] = replace(self.done.steps[-1], role="else")
         elif item.mark == "else":
             if self._how == "until":
                 self.finish()
@@ -146,6 +149,8 @@ class _Reader:
                 raise Misfit(
                     'Should that be waited for, or done? Say "once ...", or what the robot should do.'
                 )
+            if item.clause is not None and any(m.quantifier for _, m in item.clause.bindings):
+                raise Misfit("Say what should be done with all of them, in one sentence.")
             self.done.hear_fact(item)
         elif item.role == "topic" and item.mention is not None:
             if self._in_an_order() and self._at_an_end():

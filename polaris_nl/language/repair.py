@@ -94,6 +94,7 @@ class Repairs:
         yield bare
         yield from self._active(bare, mentions if len(bare) == len(tokens) else ())
         yield from self._with_subject(tokens, mentions)
+        yield from self._by_doing(tokens, mentions)
         yield from self._for_each(tokens, mentions)
         yield from self._corrected(tokens, mentions, self._all_markers)
         yield _once(tokens)
@@ -187,6 +188,21 @@ class Repairs:
             for at in range(person.end + 1, len(tokens) - 1):
                 if tokens[at] in ("and", "but") and tokens[at + 1] in _WANTING:
                     yield [*tokens[: at + 1], *tokens[: person.end], *tokens[at + 1 :]]
+
+    def _by_doing(
+        self, tokens: list[str], mentions: Sequence[Sequence[Mention]]
+    ) -> Iterator[list[str]]:
+        """`clear the table by moving all that is on it to the sink`: how it is to be done, alone."""
+        for at in range(2, len(tokens) - 2):
+            if tokens[at] != "by" or BREAK in tokens or _WAITS & {*tokens[:at]}:
+                continue
+            named = [m for there in mentions[:at] for m in there if m.end == at and m.candidates]
+            for base in self._verbs.bases(tokens[at + 1], "gerund") if named else ():
+                rest = tokens[at + 2 :]
+                if "it" in rest:
+                    first = rest.index("it")
+                    rest[first : first + 1] = tokens[named[0].start : at]
+                yield [base, *rest]
 
     # Corrections
 

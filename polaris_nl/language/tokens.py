@@ -19,6 +19,10 @@ _CONTRACTIONS = {
     "n't": "not", "nt": "not", "'d": "would", "'ll": "will", "'m": "am", "'re": "are", "'ve": "have",
     "ca": "can", "wo": "will", "sha": "shall", "cannot": "can",
 }  # fmt: skip
+_IN_FULL = {
+    "gonna": "going to", "wanna": "want to", "gotta": "got to", "gimme": "give me", "lemme": "let me",
+}  # fmt: skip
+"""Written out before anything is split."""
 _NUMBERS = [
     "zero",
     "one",
@@ -44,7 +48,7 @@ _NUMBERS = [
 ]
 _SPELLINGS = {
     "colour": "color", "grey": "gray", "favourite": "favorite", "centre": "center", "okay": "ok",
-    "til": "till", "'til": "till", "cos": "because", "gonna": "going", "wanna": "want", "lemme": "let",
+    "til": "till", "'til": "till", "cos": "because",
 }  # fmt: skip
 _SUBJECTS = frozenset(
     (
@@ -60,6 +64,7 @@ _SUBJECTS = frozenset(
         "she",
         "he",
         "everything",
+        "whatever",
     )
 )
 """Words after which `'s` is a verb, not a possessive."""
@@ -113,6 +118,7 @@ def words(text: str) -> list[str]:
     """The words of a text and its marks: `.` for the end of a sentence and `,` for a comma."""
     lowered = re.sub(r"[\"“”()\[\]{}<>*_/\\|~^`#@=+%&$-]", " ", plain(text).lower())
     lowered = re.sub(r"\s*\n\s*", " . ", lowered.strip())
+    lowered = re.sub(rf"\b({'|'.join(_IN_FULL)})\b", lambda m: _IN_FULL[m[0]], lowered)
     # Marks stand alone, so that "1." and "home." are split the same way.
     lowered = re.sub(r"([.,!?;:…])", r" \1 ", lowered)
     found: list[str] = []

@@ -20,7 +20,7 @@ from polaris_nl.speech.weight import Weight
 BREAK = ". "
 """Between pieces of speech that a pause separates."""
 MOST_DIFFERENT: Mapping[Weight, float] = {
-    Weight.ASKING: 0.15, Weight.HARMLESS: 0.5, Weight.CHANGING: 0.5, Weight.MOVING: 0.45,
+    Weight.ASKING: 0.0, Weight.HARMLESS: 0.5, Weight.CHANGING: 0.5, Weight.MOVING: 0.45,
 }  # fmt: skip
 """The most that free decoding may differ, in characters of the longer text."""
 SHORT, MORE_FOR_SHORT = 2, 0.15
@@ -63,6 +63,8 @@ def disagreement(
     words, different = len(text.split()), difference(text, free)
     if gain is not None and words > SHORT and gain < least_gain(weight, words):
         return f"it is likelier to be what was heard freely, by {-gain:.1f} a word"
+    if weight is Weight.ASKING and different > MOST_DIFFERENT[weight]:
+        return f"it makes no whole sense, and heard freely it is {different:.2f} different"
     if gain is not None and gain >= SURE and weight is not Weight.MOVING:
         return ""
     if different > _allowed(weight, words):

@@ -34,8 +34,8 @@ FAR = 8.0
 BROKEN_OFF = 0.5
 """Less than this, a word, is what it costs to go on in the middle of what was said; behind its end it costs far
 more. The second recogniser ends early too often for the likelihood of an end to show that."""
-LEFT_OUT = 0.65
-"""What has fewer of the letters that both recognisers heard freely leaves something out."""
+LEFT_OUT, MOSTLY_LEFT_OUT = 0.65, 0.4
+"""What has fewer of the letters that both recognisers heard freely leaves something out, or most of it."""
 PARTLY = 6.0
 """By how much less likely a reading is held that makes sense only in part."""
 LEAST, MARGIN = -1.5, 1.0
@@ -123,7 +123,10 @@ def heard_again(
         rivals = [r for r in rated if r.sensible and r.means != best.means]
         margin = best.score - max((r.score for r in rivals), default=-math.inf)
         near = [r.found.text for r in rivals if best.score - r.score < _margin(best, r)]
-        contested = bool(near) or _leaves_out(best, piece, opinion)
+        kept = _kept(best, piece, opinion)
+        if kept < MOSTLY_LEFT_OUT:
+            return first
+        contested = bool(near) or kept < LEFT_OUT
         refused = not (first.accepted or first.doubts)
         if refused and not best.heard and _is_foreign(best, piece):
             return first
@@ -158,10 +161,10 @@ def _is_foreign(best: _Rated, piece: Spoken) -> bool:
     return bool(piece.gains) and piece.gains[0] < words * least_gain(best.found.weight, words)
 
 
-def _leaves_out(best: _Rated, piece: Spoken, opinion: Opinion) -> bool:
-    """Whether both recognisers heard far more when they heard freely: "... and then go home" may be lost."""
+def _kept(best: _Rated, piece: Spoken, opinion: Opinion) -> float:
+    """How much of what both recognisers heard freely a reading has: "... and then go home" may be lost."""
     heard = min(map(_letters, (piece.free, opinion.texts[0])))
-    return _letters(best.found.reading) < LEFT_OUT * heard
+    return _letters(best.found.reading) / heard if heard else 1.0
 
 
 def _letters(text: str) -> int:

@@ -103,6 +103,41 @@ LADY = "bring the lady her book"
             "put the cup on the counter and if it's clean after that put it in the cupboard",
             "start [(at cup countertop) [when (is-clean cup): (in cup cupboard)]]",
         ),
+        (
+            "dinner-party",
+            "cup on the counter please and once it's clean put it in the cupboard",
+            "start [(at cup countertop) [when (is-clean cup): (in cup cupboard)]]",
+        ),
+        (
+            "dinner-party",
+            "open the fridge followed by placing the plate on the shelf",
+            "start [(open fridge) [(at plate shelf)]]",
+        ),
+        (
+            "dinner-party",
+            "take the bowl to the kid if he's in the dining room and leave it on the shelf if he isn't",
+            "start [(at white-bowl shelf)] [when (person-in kid dining-area): (has kid white-bowl)]",
+        ),
+        (
+            "dinner-party",
+            "whatever's on the coffee table just move it to the sideboard",
+            "start [(forall (?x - object) (imply (at ?x coffee-table) (at ?x sideboard)))]",
+        ),
+        (
+            "dinner-party",
+            "clear the coffee table by moving everything that is on it to the sideboard",
+            "start [(forall (?x - object) (imply (at ?x coffee-table) (at ?x sideboard)))]",
+        ),
+        (
+            "care-home",
+            "the pills go to the nurse and then to the resident",
+            "start [(has caregiver pill-box) [(has resident pill-box)]]",
+        ),
+        (
+            "care-home",
+            "red cup blue cup and plate to the counter",
+            "start [(at blue-cup worktop) & (at plate worktop) & (at red-cup worktop)]",
+        ),
     ],
 )  # fmt: skip
 def test_it_is_understood_as_a_whole(world: str, said: str, meant: str) -> None:
@@ -120,6 +155,18 @@ def test_it_is_understood_as_a_whole(world: str, said: str, meant: str) -> None:
             "it is the blue mug that goes in the fridge not the white cup",
             "start [(in blue-cup fridge) [(not (open fridge))]]",
         ),
+        (
+            ("put the cup on the desk",),
+            "put the cup on the counter not on the desk",
+            "start [(at cup worktop)]",
+        ),
+        (
+            ("put the cup on the desk then go home",),
+            "in between those two fill the tray",
+            "start [(at cup desk) [(is-full tray) [(robot-at home)]]]",
+        ),
+        ((LADY, "then go home"), "cancel the last step", "start [(has resident book)]"),
+        ((LADY,), "forget the book bring the blanket instead", "start [(has resident blanket)]"),
     ],
 )
 def test_what_is_said_against_something_takes_its_place(

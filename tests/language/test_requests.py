@@ -38,6 +38,9 @@ FLOORS: Mapping[str, tuple[float, float]] = {
     "parents": (0.95, 0.0),
     "assistant-users": (0.95, 0.005),
     "carers": (0.98, 0.005),
+    "teenagers": (0.92, 0.02),
+    "engineers": (0.92, 0.02),
+    "night-nurses": (0.81, 0.035),
 }
 """For each file, the share that must be understood rightly, and that may be understood wrongly."""
 
