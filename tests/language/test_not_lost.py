@@ -115,7 +115,7 @@ LADY = "bring the lady her book"
         ),
         (
             "dinner-party",
-            "take the bowl to the kid if he's in the dining room and leave it on the shelf if he isn't",
+            "take the soup bowl to the kid if he's in the dining room and leave it on the shelf if he isn't",
             "start [(at white-bowl shelf)] [when (person-in kid dining-area): (has kid white-bowl)]",
         ),
         (
