@@ -188,7 +188,7 @@ class Background:
         subject = tokens[start] in OWNED or tokens[start] in SUBJECTS
         if not subject or _ENDING & {*tokens[start:]} or BREAK in tokens[start:]:
             return
-        if not any(there for there in clauses[start:]):
+        if not any(clauses[start:]):
             yield at, size
 
     def _for_others(

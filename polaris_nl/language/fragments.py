@@ -247,7 +247,7 @@ class Fragments:
         for words in self._phrases(tokens, at):
             if words not in self._reasons or _purpose(words, at, clauses):
                 continue
-            yield from _passed_over(tokens, at + len(words))
+            yield from self._passed_over(tokens, at, at + len(words), clauses)
         start = at + 1
         if tokens[at] == "so" and start < len(tokens):
             # "So the clothes can air": what "so she can" is for those that have a name.
@@ -257,7 +257,41 @@ class Fragments:
             if not any(c.kind in _ASKING for c in clauses[start]):
                 for end in ends:
                     if {*tokens[end : end + 1]} & _ENABLING:
-                        yield from _passed_over(tokens, end + 1)
+                        yield from self._passed_over(tokens, at, end + 1, clauses)
+
+    def _passed_over(
+        self, tokens: Sequence[str], at: int, start: int, clauses: Clauses
+    ) -> Iterator[Fragment]:
+        """A reason that goes on behind its first words, until more is asked for."""
+        may = bool(_ENABLING.intersection(tokens[at : start + 1]))
+        for end in range(start, len(tokens) + 1):
+            if end > start and tokens[end - 1] == BREAK:
+                return
+            yield Fragment(end, REASON_COST + REASON_WORD_COST * (end - start))
+            if self._asks_more(tokens, end, clauses, may):
+                return
+
+    def _asks_more(self, tokens: Sequence[str], at: int, clauses: Clauses, may: bool) -> bool:
+        """Whether more is asked for at a position in a reason: "... so that she can see it, then go home".
+
+        Args:
+            tokens: the utterance.
+            at: the position.
+            clauses: those that start at each position.
+            may: whether the reason is what somebody can do then, of which "and" may bring more.
+        """
+        start = at + (tokens[at : at + 1] in (["and"], ("and",)))
+        following = tokens[start : start + 1]
+        if not following:
+            return False
+        if tuple(tokens[start : start + 2]) in _LEADING_PAIRS:
+            return self.background.asks(tokens, start + 2, clauses)
+        if _ONWARD.intersection(following):
+            return self.background.asks(tokens, start + 1, clauses)
+        if _NO_REMARK.intersection(following) and start + 1 < len(tokens):
+            return any(c.kind == "state" for c in clauses[start + 1])
+        asked = any(c.kind == "goal" and c.form == "base" for c in clauses[start])
+        return start > at and not may and asked
 
     def _beneficiaries(
         self, tokens: Sequence[str], at: int, mentions: Mentions
@@ -329,14 +363,6 @@ def _pronouns(tokens: Sequence[str], at: int, mentions: Mentions) -> frozenset[s
     near = range(at, min(at + _NEAR, len(tokens)))
     owning = {i for i in near if any(m.candidates and m.end > i + 1 for m in mentions[i])}
     return _PRONOUNS & {tokens[i] for i in near if i not in owning}
-
-
-def _passed_over(tokens: Sequence[str], start: int) -> Iterator[Fragment]:
-    """A reason that goes on at a position, as far as it may go."""
-    for end in range(start, len(tokens) + 1):
-        if end > start and tokens[end - 1] == BREAK:
-            break
-        yield Fragment(end, REASON_COST + REASON_WORD_COST * (end - start))
 
 
 def _purpose(words: Sequence[str], at: int, clauses: Clauses) -> bool:

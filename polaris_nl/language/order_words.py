@@ -48,6 +48,36 @@ def is_otherwise(items: Sequence[Item]) -> bool:
     return len(items) > 3 and marks[-1] == "else" and "else" not in marks[:-1]
 
 
+def in_an_order(items: Sequence[Item], at: int) -> bool:
+    """Whether an item stands right before or after "then", so that it isn't only told."""
+    around = (items[max(at - 1, 0) : at], items[at + 1 : at + 2])
+    return any(i.mark == "then" for there in around for i in there)
+
+
+def condition_follows(rest: Sequence[Item]) -> bool:
+    """Whether a condition stands first."""
+    return bool(rest) and rest[0].role == "condition"
+
+
+def stands_behind(rest: Sequence[Item], joined: bool) -> bool:
+    """Whether a condition stands behind what it is for: "go home if she dismisses it".
+
+    Args:
+        rest: what follows the condition.
+        joined: whether "and" stands before it: "do A, and if it's clean after that do B".
+    """
+    rest = [i for i in rest if i.mark != "comma"]
+    if not rest or rest[0].mark in ("break", "else", "if", "until", "unless"):
+        return True
+    return goes_on(rest[0]) and not joined
+
+
+def but_before(items: Sequence[Item]) -> bool:
+    """Whether "but" stands before the latest goal: "shut it, but put the cup in it first"."""
+    joined = [i for i in items if i.mark in ("and", "comma")][-1:]
+    return any(i.text.startswith(BUT_FIRST) for i in joined)
+
+
 def all_postposed(items: Sequence[Item]) -> bool:
     """Whether goals and conditions alternate and a condition ends: "A if x and B if y"."""
     roles = [i.role for i in items if i.role in ("goal", "condition")]

@@ -15,9 +15,12 @@ from polaris_nl.language.order_words import (
     SEQUELS,
     WITH,
     all_postposed,
-    goes_on,
+    but_before,
+    condition_follows,
+    in_an_order,
     is_otherwise,
     says_only_names,
+    stands_behind,
     without,
 )
 from polaris_nl.language.resolve import Resolver
@@ -104,7 +107,7 @@ class _Reader:
         elif item.mark in ("before", "done"):
             self._ordered(item.mark)
         elif item.mark == "then" and item.text in FIRST and self._at_an_end():
-            if self._but_before():
+            if but_before(self.items[: self.at - 1]):
                 self.done.put_off()
             self.done.move_to_front()
         elif item.mark == "then" and item.text in LATER and self._at_an_end():
@@ -145,7 +148,7 @@ class _Reader:
         elif item.role == "except":
             self.done.leave_out(item)
         elif item.role == "fact":
-            if self._in_an_order():
+            if in_an_order(self.items, self.at - 1):
                 raise Misfit(
                     'Should that be waited for, or done? Say "once ...", or what the robot should do.'
                 )
@@ -153,7 +156,7 @@ class _Reader:
                 raise Misfit("Say what should be done with all of them, in one sentence.")
             self.done.hear_fact(item)
         elif item.role == "topic" and item.mention is not None:
-            if self._in_an_order() and self._at_an_end():
+            if in_an_order(self.items, self.at - 1) and self._at_an_end():
                 raise Misfit(
                     f"I can't make a goal of {item.text}; say what the robot should do then."
                 )
@@ -201,12 +204,18 @@ class _Reader:
             item = self.items[self.at]
             if item.role == "condition":
                 literals.extend(self.done.literals(item, condition=True))
-            elif not (item.mark in ("and", "comma") and self._condition_follows()):
+            elif not (
+                item.mark in ("and", "comma") and condition_follows(self.items[self.at + 1 :])
+            ):
                 break
             self.at += 1
         when = tuple(dict.fromkeys(literals))
         previous = self.done.steps[-1] if self.done.steps else None
-        if previous is not None and not self.done.new_step and self._belongs_to_previous():
+        if (
+            previous is not None
+            and not self.done.new_step
+            and (stands_behind(self.items[self.at :], self._joined) or self._postposed)
+        ):
             self._attach(previous, when, mark)
         elif mark == "unless":
             self._unless = when
@@ -234,11 +243,6 @@ class _Reader:
             raise Misfit("One or the other? Say which.")
         self.at += 1
         self.done.choose(following)
-
-    def _in_an_order(self) -> bool:
-        """Whether the latest item stands before or after "then", so that it isn't only told."""
-        around = (self.items[self.at - 2 : self.at - 1], self.items[self.at : self.at + 1])
-        return any(i.mark == "then" for there in around for i in there)
 
     def _at_an_end(self) -> bool:
         """Whether no goal follows at once: "first" is said of what came before it."""
@@ -289,11 +293,6 @@ class _Reader:
             self.done.steps.append(Step(goals, done=True))
         self.done.new_step = not behind
 
-    def _but_before(self) -> bool:
-        """Whether "but" stands before the latest goal: "shut it, but put the cup in it first"."""
-        joined = [i for i in self.items[: self.at - 1] if i.mark in ("and", "comma")][-1:]
-        return any(i.text.startswith(BUT_FIRST) for i in joined)
-
     def _leaves_out(self) -> bool:
         """Whether a step stands last that is left out where something holds: "unless she has it"."""
         return len(self.done.steps) > 1 and self.done.steps[-1].role == "else"
@@ -308,18 +307,6 @@ class _Reader:
             goals.extend(self.done.literals(self.items[self.at + 1], condition=False))
             self.at += 2
         return tuple(goals)
-
-    def _condition_follows(self) -> bool:
-        following = self.items[self.at + 1 :]
-        return bool(following) and following[0].role == "condition"
-
-    def _belongs_to_previous(self) -> bool:
-        """Whether a condition stands behind what it is for: "go home if she dismisses it"."""
-        rest = [i for i in self.items[self.at :] if i.mark != "comma"]
-        if not rest or rest[0].mark in ("break", "else", "if", "until", "unless"):
-            return True
-        # "Do A, and if it's clean after that do B": the condition is for what follows.
-        return (goes_on(rest[0]) and not self._joined) or self._postposed
 
     def _attach(self, previous: Step, when: tuple[Literal, ...], mark: str) -> None:
         if mark == "unless" and previous.when:

@@ -129,19 +129,17 @@ class Segmenter:
         self, tokens: Sequence[str], mentions: Sequence[Sequence[Mention]]
     ) -> list[list[Clause]]:
         """The clauses that start at each position; those of the latest tokens are remembered."""
-        key = tuple(tokens)
-        if self._latest is None or self._latest[0] != key:
-            known: Fitting = {}
-            self._latest = (
-                key,
-                [
-                    []
-                    if token in (BREAK, COMMA)
-                    else list(self._clauses.at(tokens, at, mentions, known))
-                    for at, token in enumerate(tokens)
-                ],
-            )
-        return self._latest[1]
+        key, latest = tuple(tokens), self._latest
+        if latest is not None and latest[0] == key:
+            return latest[1]
+        known: Fitting = {}
+        found = [
+            [] if token in (BREAK, COMMA) else list(self._clauses.at(tokens, at, mentions, known))
+            for at, token in enumerate(tokens)
+        ]
+        # As a pair, since others may understand something at the same time.
+        self._latest = key, found
+        return found
 
     def _marks_at(self, tokens: Sequence[str], at: int) -> Iterator[tuple[int, Mark]]:
         if tokens[at] == BREAK:

@@ -122,13 +122,13 @@ class Understanding:
         pending = dialogue.pending
         dialogue = replace(dialogue, pending=None)
         if pending is None:
-            meant, after = self._fresh(utterance, tokens, bare, program, dialogue)
+            meant, after = self._fresh(utterance, tokens, program, dialogue)
             return meant, self._remembered(meant, after, dialogue, tokens, program)
         answered = self._answering.answered(utterance, bare, pending, program, dialogue)
         if answered is not None:
             return answered
         unanswered = replace(dialogue, scope=replace(dialogue.scope, choices={}))
-        meant, after = self._fresh(utterance, tokens, bare, program, unanswered)
+        meant, after = self._fresh(utterance, tokens, program, unanswered)
         after = self._remembered(meant, after, dialogue, tokens, program)
         if meant.command in _KEEPING or meant.query is not None or meant.outcome == "refused":
             return meant, replace(dialogue, pending=pending)
@@ -184,37 +184,27 @@ class Understanding:
     # Ways to understand, in order
 
     def _fresh(
-        self,
-        utterance: str,
-        tokens: Sequence[str],
-        bare: Sequence[str],
-        program: Automaton,
-        dialogue: Dialogue,
+        self, utterance: str, tokens: Sequence[str], program: Automaton, dialogue: Dialogue
     ) -> tuple[Interpretation, Dialogue]:
         """What is meant by all of the tokens, or else by those before what is only told."""
         kept = self._segmenter.before_remark(tokens, self.mentions(tokens))
-        less = kept, strip(kept, self.fillers)
         if len(kept) == len(tokens):
-            return self._whole(utterance, tokens, bare, program, dialogue)
+            return self._whole(utterance, tokens, program, dialogue)
         if self._corrections.core(kept).strength > self._corrections.core(tokens).strength:
             # "To Mr Brown instead, she has eaten" is nothing on top.
-            return self._whole(utterance, *less, program, dialogue)
-        meant, after = self._whole(utterance, tokens, bare, program, dialogue)
+            return self._whole(utterance, kept, program, dialogue)
+        meant, after = self._whole(utterance, tokens, program, dialogue)
         if meant.outcome == "refused":
-            again, then = self._whole(utterance, *less, program, dialogue)
+            again, then = self._whole(utterance, kept, program, dialogue)
             if again.outcome != "refused" and again.command not in _SAID_ALONE:
                 return again, then
         return meant, after
 
     def _whole(
-        self,
-        utterance: str,
-        tokens: Sequence[str],
-        bare: Sequence[str],
-        program: Automaton,
-        dialogue: Dialogue,
+        self, utterance: str, tokens: Sequence[str], program: Automaton, dialogue: Dialogue
     ) -> tuple[Interpretation, Dialogue]:
         """What is meant by all of the tokens."""
+        bare = strip(tokens, self.fillers)
         told = self._commands.meant(tokens)
         if told is not None:
             return self._told(utterance, told), dialogue

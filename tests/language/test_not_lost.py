@@ -133,6 +133,29 @@ LADY = "bring the lady her book"
             "the pills go to the nurse and then to the resident",
             "start [(has caregiver pill-box) [(has resident pill-box)]]",
         ),
+        *(
+            ("care-home", f"put the tray on the desk {why} go home", "start [(at tray desk) [(robot-at home)]]")
+            for why in (
+                "so that she can see it then", "so that she can see it and then",
+                "because she wants it after that",
+                "while i look for it then", "to help her then", "in case they need it then",
+            )
+        ),
+        (
+            "care-home",
+            "put the tray on the desk because she wants it and close the fridge",
+            "start [(at tray desk) & (not (open fridge))]",
+        ),
+        (
+            "care-home",
+            "put the tray on the desk because she is hungry if she acknowledges lunch go home",
+            "start [(at tray desk) [when (acknowledged lunchtime): (robot-at home)]]",
+        ),
+        (
+            "care-home",
+            "put the tray on the desk so that she can see it and go home",
+            "start [(at tray desk)]",
+        ),
         (
             "care-home",
             "red cup blue cup and plate to the counter",
