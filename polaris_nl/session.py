@@ -134,8 +134,11 @@ class Session:
         """
         started = time.perf_counter()
         self._reporter.heard(utterance, source, heard)
-        interpretation, dialogue = self._interpret(utterance)
-        self._dialogue = dialogue
+        interpretation, self._dialogue = self._interpret(utterance)
+        if interpretation.outcome == "refused":
+            interpretation, self._dialogue = self.understanding.offered(
+                interpretation, self._publisher.snapshot.automaton, self._dialogue
+            )
         self._reporter.interpreted(interpretation)
         failure, confirmed = "", False
         was_echoed, self._run_echoed = self._run_echoed, False

@@ -114,6 +114,24 @@ class Answering:
             return None
         return replace(meant, utterance=utterance), after
 
+    def _agreed(
+        self,
+        utterance: str,
+        bare: Sequence[str],
+        pending: Pending,
+        program: Automaton,
+        dialogue: Dialogue,
+    ) -> tuple[Interpretation, Dialogue] | None:
+        """The part that was understood, after a yes; None where something else was said."""
+        told = self._commands.meant(bare)
+        said = tuple(bare)
+        if (told is not None and told.commands == ("yes",)) or said in _ONLY_THAT:
+            meant, after = self._language.interpret(pending.utterance, program, dialogue)
+            return replace(meant, utterance=utterance), after
+        if told is not None and told.commands == ("no",):
+            return Interpretation(utterance, "answer", _LEFT_OUT), dialogue
+        return None
+
     def answered(
         self,
         utterance: str,
@@ -123,6 +141,8 @@ class Answering:
         dialogue: Dialogue,
     ) -> tuple[Interpretation, Dialogue] | None:
         """Reads an utterance as the answer to the open question, or None where it is something else."""
+        if pending.kind == "part":
+            return self._agreed(utterance, bare, pending, program, dialogue)
         if pending.kind == "then" and tuple(bare) not in self._language.questions.neither:
             return self._done_then(utterance, bare, pending, program, dialogue)
         try:
@@ -136,9 +156,8 @@ class Answering:
         if chosen is None:
             return self._asked_again(utterance, bare, pending, program, dialogue)
         if not chosen:
-            say = "All right, I left that out. Say it another way."
             scope = replace(dialogue.scope, choices={})
-            return Interpretation(utterance, "answer", say), replace(dialogue, scope=scope)
+            return Interpretation(utterance, "answer", _LEFT_OUT), replace(dialogue, scope=scope)
         choices = {**dialogue.scope.choices, pending.phrase: chosen}
         answered = replace(dialogue, scope=replace(dialogue.scope, choices=choices))
         meant, after = self._language.interpret(pending.utterance, program, answered)
@@ -151,3 +170,7 @@ class Answering:
                 scope = scope.after((name,))
             after = replace(after, scope=replace(scope, choices={}))
         return replace(meant, utterance=utterance), after
+
+
+_LEFT_OUT = "All right, I left that out. Say it another way."
+_ONLY_THAT = (("only", "that"), ("just", "that"), ("that",), ("that", "only"), ("only", "this"))

@@ -8,7 +8,7 @@ from collections.abc import Collection, Iterator, Sequence
 from polaris_nl.language.clauses import Clause
 from polaris_nl.language.common import Common
 from polaris_nl.language.mention import Mention
-from polaris_nl.language.requests import SMALL, SUBJECTS, Requests
+from polaris_nl.language.requests import BE_OR_DO, SMALL, SUBJECTS, Requests
 from polaris_nl.language.tokens import BREAK, COMMA, PhraseSet
 
 Span = tuple[int, int]
@@ -22,6 +22,8 @@ after his nap" says no order."""
 _CORRECTING = frozenset(
     ("mean", "meant", "said", "wrong", "instead", "stop", "then", "not", "mind", "changed")
 )
+_PAIRS = frozenset(itertools.product(("i", "we"), ("want", "need", "would", "meant")))
+"""Words with which something is asked for: "it's the plate I want there"."""
 _MODALS = frozenset(("will", "not"))
 _BEING = frozenset(("is", "are", "was", "were", "'s"))
 """Verbs that tell something also of what isn't known: "tv night is over so ..."."""
@@ -91,7 +93,9 @@ class Background:
         rest = tokens[at + opening :]
         if not opening or not rest or not _LEAST_LATE <= size - at <= _MOST_LATE:
             return
-        if _ENDING & set(rest) or _CORRECTING & set(rest) or BREAK in rest or COMMA in rest:
+        if _ENDING & set(rest) or _corrects(rest) or BREAK in rest or COMMA in rest:
+            return
+        if tokens[at] == "it" and any(p in _PAIRS for p in itertools.pairwise(rest)):
             return
         if any(self._requests.may_begin(tokens, i) for i in range(at + opening, size)):
             return
@@ -228,6 +232,12 @@ class Background:
             named = any(m.end == end for there in mentions[at + 1 : end] for m in there)
             if last not in SMALL and not named and self.asks(tokens, end, clauses):
                 yield at, end
+
+
+def _corrects(words: Sequence[str]) -> bool:
+    """Whether words may take something back: "not her", but not "she is not a reader"."""
+    denied = {i for i, word in enumerate(words) if word == "not" and i and words[i - 1] in BE_OR_DO}
+    return any(w in _CORRECTING for i, w in enumerate(words) if i not in denied)
 
 
 def _takes_up(clause: Clause) -> bool:

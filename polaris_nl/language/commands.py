@@ -19,6 +19,19 @@ _ALONE = (("what",), ("sorry",), ("right",))
 """Commands only where nothing else is said: "then what" asks for something else."""
 
 
+_HALTING = frozenset(("stop", "pause", "halt", "freeze", "abort", "whoa"))
+_HALTING_WITHIN = 4
+"""Words within which they stand: "oh heavens, stop, ...", not in what is told of a bus stop."""
+_NO_HALT = frozenset(
+    ("the", "a", "to", "not", "never", "will", "would", "can", "should", "did", "does", "do", "bus")
+)
+_GOES_ON = frozenset(
+    ("when", "if", "once", "until", "till", "before", "after", "unless", "at", "in", "by", "on", "near", "from",
+     "to", "with", "off", "over")
+)  # fmt: skip
+"""Words behind which it is said when, or where, or what to stop with."""
+
+
 @dataclass(frozen=True, slots=True)
 class Told:
     """What an utterance commands.
@@ -79,6 +92,21 @@ class Commands:
             return None
         several = self._several(plain)
         return _together(several) if several else None
+
+    def halting(self, tokens: Sequence[str]) -> tuple[Command, str] | None:
+        """A stop or a pause that an utterance begins with, and the rest: "stop, you're dripping".
+
+        For what isn't understood as a whole; "stop when the tray is full" isn't taken for one.
+        """
+        plain = tuple(t for t in tokens if t not in (BREAK, COMMA))
+        for at in range(min(_HALTING_WITHIN, len(plain) - 1)):
+            if plain[at] not in _HALTING or (at and plain[at - 1] in _NO_HALT):
+                continue
+            for end in range(len(plain) - 1, at, -1):
+                command = self._one(plain[at:end])
+                if command in ("stop", "pause") and plain[end] not in _GOES_ON:
+                    return command, " ".join((*plain[:at], *plain[end:]))
+        return None
 
     def _one(self, tokens: tuple[str, ...]) -> Command | None:
         found = (

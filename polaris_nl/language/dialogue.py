@@ -21,7 +21,8 @@ class Pending:
         options: the answers offered, as spoken, with the entity or checkpoint each means.
         types: what an answer may be where nothing was offered; empty for anything.
         number: how many are wanted, or 0 for any number.
-        kind: what is asked for: a thing, a step of the program, or what to do then.
+        kind: what is asked for: a thing, a step of the program, what to do then, or whether what was
+            understood, a part of what was said, was meant.
     """
 
     utterance: str
@@ -29,7 +30,7 @@ class Pending:
     options: tuple[tuple[str, str], ...] = ()
     types: tuple[str, ...] = ()
     number: int = 0
-    kind: OneOf["thing", "step", "then"] = "thing"
+    kind: OneOf["thing", "step", "then", "part"] = "thing"
 
 
 @dataclass(frozen=True, slots=True)

@@ -25,6 +25,8 @@ _JOINERS = PhraseSet(
         ("plus",),
     )
 )
+_TAKEN_UP = ("it", "that", "them")
+"""Pronouns for what "everything on it" is on."""
 _WITHIN = ("on", "in", "at", "inside")
 _OVER = ("over", "out", "down", "up", "through")
 """Words before those that say where a thing is: "the table over in the canteen"."""
@@ -171,7 +173,10 @@ class MentionFinder:
         if not origin and inner < len(tokens) and tokens[inner] in _WITHIN:
             origin = 1
         for place in self._single(tokens, inner + origin) if origin else ():
-            if mention.place is None and (not place.pronoun or place.pronoun == "there"):
+            taken_up = place.pronoun == "there" or (
+                mention.quantifier and place.pronoun in _TAKEN_UP
+            )
+            if mention.place is None and (not place.pronoun or taken_up):
                 yield replace(_longer(tokens, mention, place.end), place=place)
             elif mention.place is not None and self._is_region(place):
                 # "On the table in the kitchen": where its place is, is known.
@@ -192,7 +197,7 @@ class MentionFinder:
             if not other.pronoun:
                 yield replace(_longer(tokens, mention, other.end), beside=True)
         size = self._whereabouts.length_at(tokens, inner)
-        if size:
+        if size and not (mention.quantifier and tokens[inner + size - 1] in _TAKEN_UP):
             yield replace(_longer(tokens, mention, inner + size), beside=True)
 
     def _is_one(self, mention: Mention) -> bool:

@@ -38,6 +38,7 @@ _ORDINALS = {
     "first": 0, "second": 1, "third": 2, "fourth": 3, "fifth": 4, "sixth": 5, "last": -1, "latest": -1,
     "final": -1, "previous": -1, "newest": -1, "one": 0, "two": 1, "three": 2, "four": 3, "five": 4, "six": 5,
 }  # fmt: skip
+_MIDDLE = "middle"
 _NUMBERS = ("one", "two", "three", "four", "five", "six")
 _NOUNS: Mapping[str, str] = {
     "alert": "alert", "message": "tell", "announcement": "tell", "notification": "notify", "reminder": "remind",
@@ -47,8 +48,9 @@ _NOUNS: Mapping[str, str] = {
 """Nouns for what is done, with its verb."""
 _SMALL = (
     "to", "on", "in", "into", "onto", "at", "from", "up", "away", "back", "down", "with", "about", "that", "of",
-    "it", "her", "him", "them", "there", "out", "for", "inside", "over",
+    "it", "her", "him", "them", "me", "us", "there", "out", "for", "inside", "over",
 )  # fmt: skip
+_TAKEN_UP = ("it", "her", "him", "them", "me", "us", "there")
 _BETWEEN = ("", "and", "with", "before", "after", "behind", "to")
 """Words behind "the first" where it stands for the first step."""
 _MOST_THINGS = 3
@@ -228,9 +230,11 @@ class _Search:
             return
         if word in _NUMBERS and {"steps", "checkpoints", "numbers"} & set(self.tokens):
             yield at + 1, self._nth(made, _ORDINALS[word])
-        if word not in _ORDINALS or word in _NUMBERS:
+        if word == _MIDDLE and len(made) % 2 == 0:
             return
-        number, end = _ORDINALS[word], at + 1
+        if (word not in _ORDINALS and word != _MIDDLE) or word in _NUMBERS:
+            return
+        number, end = _ORDINALS[word] if word != _MIDDLE else len(made) // 2, at + 1
         if self._word(end) == "but" and self._word(end + 1) == "one" and number == -1:
             number, end = -2, end + 2
         latest = self._newest
@@ -350,17 +354,20 @@ class _Search:
     def _things(self, at: int) -> Iterator[tuple[int, list[Mention]]]:
         """What a description names: at most three things, with small words between them."""
         things: list[Mention] = []
+        taken_up = False
         while at < len(self.tokens) and len(things) < _MOST_THINGS:
             here = self.mentions[at] if at < len(self.mentions) else ()
             found = max((m for m in here if m.candidates), key=lambda m: m.end, default=None)
             if found is not None:
                 things.append(found)
                 at = found.end
+                taken_up = True
                 yield at, list(things)
             elif self.tokens[at] in _SMALL:
                 at += 1
-                if self.tokens[at - 1] in ("it", "her", "him", "them", "there") and not things:
-                    yield at, []
+                taken_up = taken_up or self.tokens[at - 1] in _TAKEN_UP
+                if taken_up:
+                    yield at, list(things)
             else:
                 return
 

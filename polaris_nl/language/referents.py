@@ -265,7 +265,7 @@ class Referents:
             parts.append(Literal("kind", ("?x", kind)))
         parts.extend(Literal(p, ("?x",), positive) for p, positive in mention.states)
         if mention.place is not None:
-            there = self.meant(mention.place, ("surface", "container"), Scope()).entities
+            there = self.meant(mention.place, ("surface", "container"), scope).entities
             predicate = "in" if is_a(self._world, there[0], ("container",)) else "at"
             parts.append(Literal(predicate, ("?x", there[0])))
         left_out = self._excepted(mention, types, scope)

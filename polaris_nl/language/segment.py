@@ -94,7 +94,7 @@ class Segmenter:
         best: list[dict[Mode, list[_Path]]] = [{} for _ in range(size + 1)]
         best[0]["plain"] = [(0.0, 0, ())]
         counter = 0
-        clauses = self._clauses_in(tokens, mentions)
+        clauses = self.clauses_in(tokens, mentions)
         for at in range(size):
             if not best[at]:
                 continue
@@ -121,11 +121,11 @@ class Segmenter:
         starts = [*background.remarks(tokens, mentions)]
         if not starts:
             return tuple(tokens)
-        clauses = self._clauses_in(tokens, mentions)
+        clauses = self.clauses_in(tokens, mentions)
         told = (at for at in starts if any(background.told_behind(tokens, at, mentions, clauses)))
         return tuple(tokens[: next(told, len(tokens))])
 
-    def _clauses_in(
+    def clauses_in(
         self, tokens: Sequence[str], mentions: Sequence[Sequence[Mention]]
     ) -> list[list[Clause]]:
         """The clauses that start at each position; those of the latest tokens are remembered."""

@@ -24,6 +24,7 @@ from polaris_nl.language.lexicon import Lexicon
 from polaris_nl.language.mention import Mention
 from polaris_nl.language.mentions import MentionFinder
 from polaris_nl.language.naming import Names
+from polaris_nl.language.parts import LEAST, behind_told, parts
 from polaris_nl.language.patterns import Patterns, strip
 from polaris_nl.language.phrases import recogniser_phrases
 from polaris_nl.language.queries import answer_to, contrast_asked
@@ -130,9 +131,40 @@ class Understanding:
         unanswered = replace(dialogue, scope=replace(dialogue.scope, choices={}))
         meant, after = self._fresh(utterance, tokens, program, unanswered)
         after = self._remembered(meant, after, dialogue, tokens, program)
+        if pending.kind == "part":
+            # A yes to it has to come right behind it.
+            return meant, replace(
+                after, pending=pending if meant.command == "repeat" else after.pending
+            )
         if meant.command in _KEEPING or meant.query is not None or meant.outcome == "refused":
             return meant, replace(dialogue, pending=pending)
         return meant, after
+
+    def offered(
+        self, refused: Interpretation, program: Automaton, dialogue: Dialogue
+    ) -> tuple[Interpretation, Dialogue]:
+        """A refusal with the part of the utterance that can be understood, to be done after a yes.
+
+        Args:
+            refused: what an utterance was taken to mean.
+            program: the program it is about.
+            dialogue: what was said before it, and that it was refused.
+        """
+        tokens = self._spelling.mended(words(refused.utterance), program)
+        if refused.refusal is None or not LEAST < len(tokens) <= MOST_WORDS:
+            return refused, dialogue
+        clauses = self._segmenter.clauses_in(tokens, self.mentions(tokens))
+        for part in parts(tokens, clauses, self._spelling.known):
+            text = " ".join(strip(part, (*self.fillers, *_LEADING)))
+            meant, _ = self._fresh(text, part, program, dialogue)
+            if meant.outcome == "applied" or meant.query is not None or meant.command == "undo":
+                reason = refused.refusal.reason.removesuffix(self.examples()).rstrip()
+                say = f'{reason} Did you mean only "{text}"?'
+                pending = Pending(text, "", kind="part")
+                return replace(
+                    refused, say=say, refusal=replace(refused.refusal, reason=say)
+                ), replace(dialogue, pending=pending)
+        return refused, dialogue
 
     def _remembered(
         self,
@@ -186,6 +218,18 @@ class Understanding:
     def _fresh(
         self, utterance: str, tokens: Sequence[str], program: Automaton, dialogue: Dialogue
     ) -> tuple[Interpretation, Dialogue]:
+        """What is meant, without what is only told around it; by a "stop" where nothing else is."""
+        meant, after = self._with_remarks(utterance, tokens, program, dialogue)
+        if meant.outcome == "refused":
+            behind = self._behind_told(utterance, tokens, program, dialogue)
+            if behind is not None:
+                return behind
+        halting = self._halting(utterance, tokens) if meant.outcome == "refused" else None
+        return (halting or meant), after
+
+    def _with_remarks(
+        self, utterance: str, tokens: Sequence[str], program: Automaton, dialogue: Dialogue
+    ) -> tuple[Interpretation, Dialogue]:
         """What is meant by all of the tokens, or else by those before what is only told."""
         kept = self._segmenter.before_remark(tokens, self.mentions(tokens))
         if len(kept) == len(tokens):
@@ -199,6 +243,34 @@ class Understanding:
             if again.outcome != "refused" and again.command not in _SAID_ALONE:
                 return again, then
         return meant, after
+
+    def _behind_told(
+        self, utterance: str, tokens: Sequence[str], program: Automaton, dialogue: Dialogue
+    ) -> tuple[Interpretation, Dialogue] | None:
+        """What is asked for behind what is only told, in whatever words; None where nothing is."""
+        mentions = self.mentions(tokens)
+        found = behind_told(tokens, self._segmenter.clauses_in(tokens, mentions), mentions)
+        if found is None:
+            return None
+        start, named = found
+        scope = dialogue.scope
+        for name in named:
+            scope = scope.after((name,))
+        heard = replace(dialogue, scope=scope)
+        meant, after = self._with_remarks(utterance, tokens[start:], program, heard)
+        if meant.outcome == "refused" or meant.command in _SAID_ALONE:
+            return None
+        return replace(meant, aside=(" ".join(tokens[:start]), *meant.aside)), after
+
+    def _halting(self, utterance: str, tokens: Sequence[str]) -> Interpretation | None:
+        """A stop or pause with words that aren't understood; where it is heard, the quick words act on it."""
+        found = self._commands.halting(tokens)
+        if found is None:
+            return None
+        command, rest = found
+        return Interpretation(
+            utterance, "command", _COMMAND_SAYS[command], command=command, aside=(rest,)
+        )
 
     def _whole(
         self, utterance: str, tokens: Sequence[str], program: Automaton, dialogue: Dialogue
@@ -328,6 +400,8 @@ class Understanding:
 
 _KEEPING = ("help", "repeat", "read-program", "read-plan", "status", "yes")
 """Commands after which an open question can still be answered."""
+_LEADING = (("and",), ("then",), ("so",), ("but",))
+"""Words that go on with what isn't offered."""
 _REPLIES = frozenset(("yes", "no"))
 _SAID_ALONE = _REPLIES | {"run", "resume", "new", "load", "save", "quit"}
 """Commands that nobody gives a reason for: "let's get going or we'll miss it" is said to others."""

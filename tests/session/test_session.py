@@ -163,6 +163,16 @@ def test_a_refusal_leaves_the_program_alone_and_gives_its_reason(
     assert [type(e) for e in session.events].count(Edited) == 1
 
 
+def test_what_a_refusal_offers_is_done_after_a_yes_and_only_then(session: Watched) -> None:
+    answer = session.say("do the hoovering would you and open the fridge")
+    assert answer.interpretation.outcome == "refused"
+    assert answer.say == 'I don\'t understand "hoovering". Did you mean only "open the fridge"?'
+    assert session.understood("yes").outcome == "applied"
+    assert len(session.snapshot.automaton.checkpoints) == 1
+    assert session.say("yes").interpretation.outcome == "applied"
+    assert len(session.snapshot.automaton.checkpoints) == 2
+
+
 def test_a_question_leaves_the_program_alone_until_it_is_answered(session: Watched) -> None:
     answer = session.say("Go to the room.")
     question = answer.interpretation.question

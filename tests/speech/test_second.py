@@ -216,20 +216,27 @@ PHRASES = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("text", "decibels"), [(TRAY, 4), (PHRASES[2], 0)])
-def test_ears_hear_again_what_noise_has_made_unsure(
-    text: str, decibels: float, maker: EarMaker
-) -> None:
+def test_ears_hear_again_what_noise_has_made_unsure(maker: EarMaker) -> None:
+    """Which one gets lost depends on the machine's arithmetic, by a decibel; that more are heard doesn't."""
+
     def whole(text: str) -> Weight | None:
         return Weight.CHANGING if text in PHRASES else None
 
     ears = maker.ears(PHRASES, ["cup", "tray", "desk", "table", "fridge", "cupboard"])
-    blocks = [*silence(0.6), *blocks_of(in_noise(spoken(text), decibels)), *silence(1)]
-    alone = replace(ears, second=None).utterance(blocks, whole, means)
-    assert (alone.accepted, alone.again) == (False, "")
-    said = ears.utterance(blocks, whole, means)
-    assert (said.text, said.accepted) == (text, True)
-    assert said.again
+    by_one: list[str] = []
+    by_both: list[str] = []
+    for text in PHRASES:
+        for decibels in (2.0, 4.0):
+            blocks = [*silence(0.6), *blocks_of(in_noise(spoken(text), decibels)), *silence(1)]
+            alone = replace(ears, second=None).utterance(blocks, whole, means)
+            said = ears.utterance(blocks, whole, means)
+            assert alone.again == ""
+            assert said.again
+            by_one += [text] if (alone.text, alone.accepted) == (text, True) else []
+            by_both += [text] if said.accepted else []
+            assert not said.accepted or said.text == text
+    assert len(by_both) >= len(by_one) + 2
+    assert len(by_both) > len(PHRASES)
 
 
 def test_what_both_decodings_of_vosk_bear_out_is_not_heard_again(maker: EarMaker) -> None:
