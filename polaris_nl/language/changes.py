@@ -19,6 +19,7 @@ from polaris_nl.language.conditions import condition_in
 from polaris_nl.language.dialogue import Dialogue, Latest
 from polaris_nl.language.edited_steps import NOT_START, going_on, latest_step, pair
 from polaris_nl.language.generate import goals_in_words, steps_in_words
+from polaris_nl.language.goal_relations import flat
 from polaris_nl.language.interpretation import Interpretation
 from polaris_nl.language.mention import Mention
 from polaris_nl.language.patterns import Match, Patterns
@@ -156,6 +157,11 @@ class Changes:
         if this == START and intent in NOT_START:
             raise EditError(NOT_START[intent])
         name = program.checkpoints[this].name
+        if "k" in match.references:
+            # "Rather than putting the towel there, hand it to her": it is the towel.
+            for goal in flat(program.checkpoints[this].goals):
+                if goal.args:
+                    dialogue = replace(dialogue, scope=dialogue.scope.after(goal.args[:1]))
         if intent == "remove":
             return several_removed(program, [named[slot] for slot in ("k", "l") if slot in named])
         if intent == "rename":

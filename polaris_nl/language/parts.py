@@ -95,6 +95,10 @@ _TOLD = frozenset(
 )
 """More verbs of what is told."""
 _TAKEN_UP = frozenset(("it", "them", "one", "there", "that", "those", "these", "him", "her", "his"))
+_ASKING_YOU = frozenset(("could", "can", "would", "will"))
+_REPORTING = frozenset(
+    ("asked", "said", "says", "asks", "whether", "wonder", "wonders", "what", "how", "where")
+)
 _THINGS = _TAKEN_UP - {"him", "her", "his"}
 """Pronouns for what may have been named by words that aren't known."""
 _ASKING = frozenset(("where", "what", "which", "who", "how", "why", "undo"))
@@ -128,13 +132,25 @@ def behind_told(
         if not BE_OR_DO.union(_TOLD).intersection(tokens[:at]):
             continue
         start = at + (tokens[at] == "so")
-        if start == at and not (_requests(clauses[at]) and tokens[at - 1] not in _NOT_BEFORE):
+        asked = _polite(tokens, at)
+        begins = _requests(clauses[at]) and tokens[at - 1] not in _NOT_BEFORE
+        if start == at and not begins and not (asked and _requests(clauses[asked])):
             continue
         named = _named(mentions, at)
         if named is None and _TAKEN_UP.intersection(tokens[start:]):
             return None  # What "it" is isn't known.
         return start, named or ()
     return None
+
+
+def _polite(tokens: Sequence[str], at: int) -> int:
+    """Where what is asked for begins behind "could you" or "please" at a position, or 0."""
+    if tokens[at - 1] in _REPORTING:
+        return 0  # "He asked could you ..." may be told.
+    if tokens[at] == "please" and at + 1 < len(tokens):
+        return at + 1
+    asks = tokens[at] in _ASKING_YOU and tuple(tokens[at + 1 : at + 2]) == ("you",)
+    return at + 2 if asks and at + 2 < len(tokens) else 0
 
 
 def _wished(clause: Clause) -> bool:
