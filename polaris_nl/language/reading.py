@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from polaris_nl.language.clauses import Clause
 from polaris_nl.language.goal_relations import flat, one_at_a_time
 from polaris_nl.language.order_words import (
     BUT_FIRST,
@@ -152,6 +153,8 @@ class _Reader:
                 raise Misfit(
                     'Should that be waited for, or done? Say "once ...", or what the robot should do.'
                 )
+            if item.clause is not None and self._says_more(item.clause):
+                raise Misfit('Should that be so, too? Join the two with "and".')
             if item.clause is not None and any(m.quantifier for _, m in item.clause.bindings):
                 raise Misfit("Say what should be done with all of them, in one sentence.")
             self.done.hear_fact(item)
@@ -161,6 +164,13 @@ class _Reader:
                     f"I can't make a goal of {item.text}; say what the robot should do then."
                 )
             self.done.hear_named(item.mention)
+
+    def _says_more(self, told: Clause) -> bool:
+        """Whether what seems told goes on with what is asked for: "fridge shut and closet open"."""
+        before = (i for i in reversed(self.items[: self.at - 1]) if i.mark not in ("and", "comma"))
+        last = next(before, None)
+        asked = last.clause if last is not None and last.role == "goal" else None
+        return asked is not None and asked.kind == "small" and asked.predicate == told.predicate
 
     def _nothing(self) -> None:
         """`do nothing`: a way on that ends there, without goals."""

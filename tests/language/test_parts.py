@@ -131,3 +131,11 @@ def test_everything_on_it_is_what_is_on_the_thing_spoken_of() -> None:
     asked = "i am wiping the coffee table so put everything on it on the dining table"
     assert goals(said(asked)[2]) == [on_table]
     assert said("put everything on it on the dining table")[0].outcome == "question"
+
+
+def test_what_goes_on_with_what_is_asked_for_isnt_only_told() -> None:
+    assert goals(said("fridge shut and closet open")[2]) == [
+        "(not (open fridge))",
+        "(open wardrobe)",
+    ]
+    assert said("fridge shut closet open")[0].say.startswith("Should that be so, too?")
