@@ -25,6 +25,7 @@ _HALTING_WITHIN = 4
 _NO_HALT = frozenset(
     ("the", "a", "to", "not", "never", "will", "would", "can", "should", "did", "does", "do", "bus")
 )
+"""Words behind which they are told of, or denied."""
 _GOES_ON = frozenset(
     ("when", "if", "once", "until", "till", "before", "after", "unless", "at", "in", "by", "on", "near", "from",
      "to", "with", "off", "over")

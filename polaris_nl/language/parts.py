@@ -95,10 +95,12 @@ _TOLD = frozenset(
 )
 """More verbs of what is told."""
 _TAKEN_UP = frozenset(("it", "them", "one", "there", "that", "those", "these", "him", "her", "his"))
+"""Pronouns for what was spoken of."""
 _ASKING_YOU = frozenset(("could", "can", "would", "will"))
 _REPORTING = frozenset(
     ("asked", "said", "says", "asks", "whether", "wonder", "wonders", "what", "how", "where")
 )
+"""Words behind which somebody else's request is told."""
 _THINGS = _TAKEN_UP - {"him", "her", "his"}
 """Pronouns for what may have been named by words that aren't known."""
 _ASKING = frozenset(("where", "what", "which", "who", "how", "why", "undo"))
@@ -133,7 +135,7 @@ def behind_told(
             continue
         start = at + (tokens[at] == "so")
         asked = _polite(tokens, at)
-        begins = _requests(clauses[at]) and tokens[at - 1] not in _NOT_BEFORE
+        begins = _requests(clauses[at]) and tokens[at - 1] not in _NOT_BEFORE | _REPORTING
         if start == at and not begins and not (asked and _requests(clauses[asked])):
             continue
         named = _named(mentions, at)

@@ -63,6 +63,8 @@ def test_what_is_told_first_may_hold_any_words(utterance: str, goal: str) -> Non
     [
         "the doorbell is ringing put it on the desk",  # What "it" is isn't known.
         "her son asked could you go to the kitchen the other day",
+        "her son said go to the kitchen whenever it snows",
+        "could you not open the wardrobe",
         "if the doorbell rings go to the kitchen",
         "she did not want you to go to the kitchen",
         "the frobnicator is broken unless you go to the kitchen",
