@@ -5,17 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 
-from polaris_nl.automaton.automaton import START, Automaton, Checkpoint, Transition
+from polaris_nl.automaton.automaton import START, Automaton, Checkpoint
 from polaris_nl.automaton.edits import (
-    Connect,
-    MoveCheckpoint,
     RenameCheckpoint,
-    SetConditional,
     SetGoals,
     apply_all,
 )
 from polaris_nl.language.afterthoughts import limited, narrowed, spared, step_about
 from polaris_nl.language.conditions import condition_in
+from polaris_nl.language.connecting import connected
 from polaris_nl.language.dialogue import Dialogue, Latest
 from polaris_nl.language.edited_steps import NOT_START, going_on, latest_step, pair
 from polaris_nl.language.generate import goals_in_words, steps_in_words
@@ -26,6 +24,7 @@ from polaris_nl.language.patterns import Match, Patterns
 from polaris_nl.language.protocol import Language
 from polaris_nl.language.reading import steps_of
 from polaris_nl.language.references import Reference, meant
+from polaris_nl.language.reordering import asked_anew, moved, there_already
 from polaris_nl.language.reshaping import (
     Reshaped,
     conditional,
@@ -62,6 +61,8 @@ _TAKES_DOING = ("with", "by", "step", "one")
 """Words behind which something to do may be said as "going to the kitchen"."""
 _BY_DOING = ("start", "by")
 """Words before which "going to the kitchen" is something to do."""
+_PLACING = ("before", "after", "before-that", "at-start")
+"""Intents that put a step where it belongs, new or not."""
 NO_STEPS = "There are no steps yet; say what the robot should achieve first."
 NOTHING_CHANGES = "It is like that already; nothing changes."
 MeantThen = tuple[Interpretation, Dialogue]
@@ -171,9 +172,9 @@ class Changes:
         if intent == "split":
             return split(program, this, self._language.names)
         if intent in _TOGETHER:
-            return _TOGETHER[intent](program, *pair(intent, named, latest, program))
+            return _TOGETHER[intent](program, *pair(intent, named, latest, program, match.tokens))
         if intent == "connect":
-            return self._connected(match, this, named["l"], program, dialogue)
+            return connected(self._language, match, this, named["l"], program, dialogue)
         if intent == "condition":
             when = condition_in(
                 self._language, match.tokens, slots["c"], dialogue.scope, introduced=True
@@ -244,6 +245,9 @@ class Changes:
         name = program.checkpoints[this].name
         if match.intent == "before-that" and this == START:
             raise Misfit("")
+        moved = self._moved(match, this, [first, *rest], program)
+        if moved is not None:
+            return moved
         new = self._new(first.goals, first.when, program)
         said = (goals_in_words(step.goals, self._language.wording) for step in (first, *rest))
         words = ", then ".join(said)
@@ -267,48 +271,30 @@ class Changes:
             all_edits += edits
         return all_edits, say, added
 
+    def _moved(
+        self, match: Match, this: str, steps: Sequence[Step], program: Automaton
+    ) -> Reshaped | None:
+        """A step that is there already, before or after another one; None where it is a new one."""
+        intent, goals = match.intent, steps[0].goals
+        if intent not in _PLACING or asked_anew(match.tokens):
+            return None
+        if len(steps) > 1 or steps[0].when or not goals:
+            return None
+        first = next(iter(program.children(START)), START)
+        if intent == "at-start" or goals == program.checkpoints[this].goals:
+            this = first
+        if goals == program.checkpoints[this].goals:
+            return [], "", []
+        order = there_already(program, (goals, program.checkpoints[this].goals))
+        if order is None:
+            return None
+        return moved(program, order[0], this, behind=intent == "after")
+
     def _new(
         self, goals: tuple[Goal, ...], when: tuple[Literal, ...], program: Automaton
     ) -> Checkpoint:
         name = self._language.names.checkpoint(goals, when, program)
         return Checkpoint(program.fresh_checkpoint_id(), name, goals)
-
-    def _connected(
-        self, match: Match, source: str, target: str, program: Automaton, dialogue: Dialogue
-    ) -> Reshaped:
-        when: tuple[Literal, ...] = ()
-        if "f" in match.slots:
-            when = self._event(match, source, program, dialogue)
-        one, two = program.checkpoints[source].name, program.checkpoints[target].name
-        incoming = program.incoming(target)
-        say = f"{two} comes after {one} now"
-        if incoming is None:
-            arrow = Transition(program.fresh_transition_id(), source, target, when)
-            return [Connect(arrow)], say, [target]
-        if incoming.source == source:
-            return [SetConditional(incoming.id, when)], say, [target]
-        return [MoveCheckpoint(target, source, when)], say, [target]
-
-    def _event(
-        self, match: Match, source: str, program: Automaton, dialogue: Dialogue
-    ) -> tuple[Literal, ...]:
-        """The condition of a connection: "she dismisses it", or "dismissed" alone, of what was said there."""
-        language, span = self._language, match.slots["f"]
-        when = condition_in(language, match.tokens, span, dialogue.scope)
-        if when:
-            return when
-        assert isinstance(span, tuple)
-        word = " ".join(match.tokens[span[0] : span[1]])
-        predicate = language.world.domain.predicates.get(word)
-        if predicate is None or len(predicate.parameters) != 1:
-            raise Misfit("")
-        way = [source, *(t.source for t in reversed(program.path(source)))]
-        for checkpoint in way:
-            for goal in program.checkpoints[checkpoint].goals:
-                for arg in reversed(goal.args if isinstance(goal, Literal) else ()):
-                    if language.world.entities[arg].type in predicate.parameters[0].types:
-                        return (Literal(word, (arg,)),)
-        raise Misfit("")
 
     def goals(
         self, tokens: Sequence[str], span: object, dialogue: Dialogue
@@ -344,8 +330,15 @@ class Changes:
             raise Misfit("")
         return steps
 
-    def steps(self, tokens: Sequence[str], dialogue: Dialogue) -> list[Step]:
+    def steps(
+        self, tokens: Sequence[str], dialogue: Dialogue, branched: bool = False
+    ) -> list[Step]:
         """The steps that some tokens ask for, none where they ask for none.
+
+        Args:
+            tokens: what was said.
+            dialogue: what was said before.
+            branched: there is a condition that "otherwise" can belong to.
 
         Raises:
             Unclear: a question has to be asked.
@@ -355,7 +348,7 @@ class Changes:
             if cut.unknown or not any(_asks(i) for i in cut.items):
                 continue
             try:
-                steps, _ = steps_of(cut, self._language.resolver, dialogue.scope)
+                steps, _ = steps_of(cut, self._language.resolver, dialogue.scope, branched)
             except Misfit:
                 continue
             except Unclear as unclear:

@@ -13,12 +13,21 @@ from polaris_nl.language.tokens import BREAK, COMMA
 
 MOST_AT_ONCE = 16
 """Words up to which an utterance is looked at for several commands."""
-_REPLIES: tuple[Command, ...] = ("yes", "no")
+REPLIES: frozenset[Command] = frozenset(("yes", "no"))
+SAID_ALONE: frozenset[Command] = REPLIES | {"run", "resume", "new", "load", "save", "quit"}
+"""Commands that nobody gives a reason for: "let's get going or we'll miss it" is said to others."""
+COMMAND_SAYS: Mapping[Command, str] = {
+    "stop": "Stopping.",
+    "pause": "Pausing.",
+    "resume": "Going on.",
+    "yes": "There is nothing to say yes to.",
+    "no": "There is nothing to say no to.",
+    "quit": "Goodbye.",
+}
+"""What is said to a command where nothing else is."""
 _JOINS = ("and", "then")
 _ALONE = (("what",), ("sorry",), ("right",))
 """Commands only where nothing else is said: "then what" asks for something else."""
-
-
 _HALTING = frozenset(("stop", "pause", "halt", "freeze", "abort", "whoa"))
 _HALTING_WITHIN = 4
 """Words within which they stand: "oh heavens, stop, ...", not in what is told of a bus stop."""
@@ -141,6 +150,6 @@ def _together(commands: tuple[Command, ...]) -> Told:
     """Several commands as one where they come to the same; a stop comes before all others."""
     if "stop" in commands:
         return Told(("stop",))
-    asked = tuple(dict.fromkeys(c for c in commands if c not in _REPLIES))
+    asked = tuple(dict.fromkeys(c for c in commands if c not in REPLIES))
     agrees = commands[0] == "yes"
     return Told(asked, agrees) if asked else Told((commands[0],), agrees)

@@ -21,6 +21,10 @@ AROUND: Mapping[str, int] = {
 """The intents of words around a correction, and how strongly each says that it is one."""
 NEEDLESS = "correct-needless"
 """The intent of words in front of what needn't be done any more."""
+_BETTER = ("would", "be", "better")
+"""Behind a thing, what says that it should be elsewhere: "the plate would be better on the table"."""
+_BETTER_SO = ("if", "that", "to", "when", "than", "for")
+"""Words behind it that wish for something, and move nothing."""
 _WAITED = ("until", "till", "for", "here", "there")
 """Words behind "wait" that make it something to do."""
 
@@ -79,6 +83,9 @@ class Cores:
     def core(self, tokens: Sequence[str]) -> Core:
         """An utterance without "no, I meant" in front of it, "instead" behind it, and the like."""
         found, strength, needless = trimmed(tokens), 0, False
+        better = _better_elsewhere(found)
+        if better is not None:
+            found, strength = better, 1
         changed = True
         while changed:
             changed = False
@@ -94,6 +101,18 @@ class Cores:
                 changed = changed or kept != found
                 found = kept
         return Core(tuple(found), strength, needless)
+
+
+def _better_elsewhere(tokens: Sequence[str]) -> list[str] | None:
+    """What a thing "would be better" as what it should be; None where nothing is said to be better so."""
+    for at in range(1, len(tokens) - len(_BETTER)):
+        end = at + len(_BETTER)
+        end += tokens[end] == "off"
+        if tuple(tokens[at : at + len(_BETTER)]) == _BETTER and end < len(tokens):
+            if tokens[end] in _BETTER_SO or tokens[end] in (COMMA, BREAK):
+                return None
+            return [*tokens[:at], "should", "be", *tokens[end:]]
+    return None
 
 
 def trimmed(tokens: Sequence[str]) -> list[str]:

@@ -39,6 +39,7 @@ from polaris_nl.language.references import References, meant
 from polaris_nl.language.rereading import Rereading
 from polaris_nl.language.retractions import negated, place_of
 from polaris_nl.language.scope import Misfit, Unclear
+from polaris_nl.language.structure import Builder, Step
 from polaris_nl.language.tokens import words
 from polaris_nl.model.errors import EditError
 from polaris_nl.model.formula import Literal
@@ -48,7 +49,7 @@ WHAT_INSTEAD = "I don't see what should be changed; say what you meant, or undo.
 _MORE = ("also", "too", "as well", "again")
 """Words of a sentence that adds to what was said, however it starts."""
 NOTHING_OF_THAT = "That isn't asked for, so there is nothing to leave out."
-_ONLY, _PLEASE = "only", "please"
+_ONLY, _PLEASE, _INSTEAD = "only", "please", "instead"
 _ON = ("and", "but", "then", "please")
 """Words between what isn't wanted and what is."""
 
@@ -311,11 +312,14 @@ class Corrections:
     ) -> MeantThen | None:
         """Another step in the place of the latest: "no, close it"."""
         replaces = touched and not dialogue.missed
-        steps = self._changes.steps(core.tokens, dialogue) if replaces else []
+        elses = [t.target for t in program.transitions.values() if program.is_else(t.id)]
+        steps = self._changes.steps(core.tokens, dialogue, bool(elses)) if replaces else []
         if not steps:
             return None
         step = steps[0]
         target = place_of(step.goals, touched, program)
+        if step.role == "else" and len(steps) == 1 and len(elses) == 1:
+            step, target = replace(step, role="then"), elses[0]
         if core.strength < 2 and target is None:
             return None
         if core.tokens[:2] == DO_NOT:
@@ -328,16 +332,21 @@ class Corrections:
         incoming = program.incoming(target)
         if incoming is None or not step.goals:
             return None
+        there = set(program.checkpoints[target].goals)
         if (
             core.strength < 2
             and step.when
-            and incoming.when
-            and set(step.when) != set(incoming.when)
+            and incoming.conditional != set(step.when)
+            and (incoming.when or there != set(step.goals))
         ):
-            return None  # "If she dismisses it, take it to the desk instead" is another way on.
+            # "If she dismisses it, take it to the desk instead" is another way on.
+            beside = _INSTEAD in words(utterance) and not incoming.when
+            if not beside:
+                return None
+            return self._beside(utterance, step, incoming.source, program, dialogue)
         when = step.when or incoming.when
         edits: list[Edit] = []
-        if set(program.checkpoints[target].goals) != set(step.goals):
+        if there != set(step.goals):
             edits.append(SetGoals(target, step.goals))
         if incoming.conditional != set(when):
             edits.append(SetConditional(incoming.id, when))
@@ -350,6 +359,18 @@ class Corrections:
         if not any(not isinstance(e, RenameCheckpoint) for e in edits):
             edits, say = [], NOTHING_CHANGES
         return self._applied(utterance, edits, say, program, dialogue, touched)
+
+    def _beside(
+        self, utterance: str, step: Step, source: str, program: Automaton, dialogue: Dialogue
+    ) -> MeantThen:
+        """Another way on from a checkpoint: "if it's open, take it to the sink instead"."""
+        builder = Builder(self._language.world, self._language.names, program, source)
+        builder.add(step)
+        say = steps_in_words([step], self._language.wording)
+        meant, after = self._applied(
+            utterance, builder.edits, say, program, dialogue, builder.touched
+        )
+        return meant, replace(after, here=builder.here, anchor=builder.anchor)
 
     def _applied(
         self,

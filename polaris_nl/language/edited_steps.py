@@ -26,12 +26,29 @@ NOT_START: Mapping[str, str] = {
 """By intent, why it can't be done to the start."""
 
 
-def pair(intent: str, named: Mapping[str, str], latest: str, program: Automaton) -> tuple[str, str]:
+def pair(
+    intent: str,
+    named: Mapping[str, str],
+    latest: str,
+    program: Automaton,
+    tokens: Sequence[str] = (),
+) -> tuple[str, str]:
     """The two checkpoints of an edit; one that isn't named is the latest, or what is beside it.
+
+    "The first two" are the first; "in the opposite order" names none, so there must be no more than two.
 
     Raises:
         EditError: there are not two.
     """
+    made = [c for c in program.checkpoints if c != START]
+    if not named and "order" in tokens and len(made) != 2:
+        raise EditError("Say which two steps should change places.")
+    if not named and "first" in tokens:
+        first = program.children(START)[:1]
+        second = program.children(first[0])[:1] if first else ()
+        if not second:
+            raise EditError("There are not two steps for that; name them.")
+        return second[0], first[0]
     this = named.get("k", latest)
     if "l" in named:
         return this, named["l"]

@@ -18,81 +18,27 @@ MOST = 5
 """Parts that are tried: each costs as much as an utterance."""
 LEAST = 2
 """Words of a part."""
-_CHANGING = frozenset(
-    (
-        "if",
-        "when",
-        "once",
-        "unless",
-        "until",
-        "till",
-        "except",
-        "only",
-        "instead",
-        "before",
-        "otherwise",
-    )
-)
+_CHANGING = frozenset((
+    "if", "when", "once", "unless", "until", "till", "except", "only", "instead", "before",
+    "otherwise"
+))  # fmt: skip
 """Words without which the others would ask for something else."""
 _CHANGING_BEHIND = _CHANGING | {"not", "never", "no"}
 """The same behind them: "open the fridge, no, ..."."""
-_NOT_BEFORE = (
-    SUBJECTS
-    | BE_OR_DO
-    | frozenset(
-        (
-            "to",
-            "not",
-            "never",
-            "and",
-            "or",
-            "the",
-            "a",
-            "should",
-            "must",
-            "might",
-            "may",
-            "let",
-            "being",
-            "prior",
-        )
-    )
-)
+_NOT_BEFORE = SUBJECTS | BE_OR_DO | frozenset((
+    "to", "not", "never", "and", "or", "the", "a", "should", "must", "might", "may", "let", "being", "prior"
+))  # fmt: skip
 """Words behind which a verb asks for nothing."""
-_CORRECTING = frozenset(
-    (
-        "no",
-        "sorry",
-        "actually",
-        "rather",
-        "forget",
-        "meant",
-        "mean",
-        "wrong",
-        "scratch",
-        "mind",
-        "undo",
-    )
-)
+_CORRECTING = frozenset((
+    "no", "sorry", "actually", "rather", "forget", "meant", "mean", "wrong", "scratch", "mind", "undo"
+))  # fmt: skip
 """Words of what is taken back."""
 _STEPS = frozenset(("step", "part", "bit", "steps", "last", "first"))
 """Words about the program: the step that is meant is named in what is told."""
-_TOLD = frozenset(
-    (
-        "smells",
-        "rang",
-        "sent",
-        "says",
-        "said",
-        "left",
-        "wants",
-        "goes",
-        "went",
-        "feels",
-        "comes",
-        "came",
-    )
-)
+_TOLD = frozenset((
+    "smells", "rang", "sent", "says", "said", "left", "wants", "goes", "went", "feels", "comes",
+    "came"
+))  # fmt: skip
 """More verbs of what is told."""
 _TAKEN_UP = frozenset(("it", "them", "one", "there", "that", "those", "these", "him", "her", "his"))
 """Pronouns for what was spoken of."""

@@ -33,6 +33,7 @@ _WHERE = [
                   "what happens when", "for when", "for if", "with", "about", "for", "of", "to", "involving",
                   "in", "on", "at", "concerning", "what you do if", "saying")
 ]  # fmt: skip
+_ELSE = [("what", "happens", "otherwise"), ("what", "you", "do", "otherwise")]
 _DOER = [tuple(words.split()) for words in ("you", "the robot", "robot", "it", "i", "we", "to")]
 _ORDINALS = {
     "first": 0, "second": 1, "third": 2, "fourth": 3, "fifth": 4, "sixth": 5, "last": -1, "latest": -1,
@@ -40,6 +41,7 @@ _ORDINALS = {
 }  # fmt: skip
 _MIDDLE = "middle"
 _NUMBERS = ("one", "two", "three", "four", "five", "six")
+_PLURALS = frozenset(("steps", "checkpoints", "numbers"))
 _NOUNS: Mapping[str, str] = {
     "alert": "alert", "message": "tell", "announcement": "tell", "notification": "notify", "reminder": "remind",
     "delivery": "bring", "trip": "go", "drive": "drive", "visit": "go", "move": "go", "handover": "hand",
@@ -228,7 +230,9 @@ class _Search:
             if self._word(number) in _NUMBERS:
                 yield number + 1, self._nth(made, _ORDINALS[self._word(number)])
             return
-        if word in _NUMBERS and {"steps", "checkpoints", "numbers"} & set(self.tokens):
+        if word in _PLURALS and self._word(at + 1) in _NUMBERS:
+            yield at + 2, self._nth(made, _ORDINALS[self._word(at + 1)])
+        if word in _NUMBERS and _PLURALS.intersection(self.tokens):
             yield at + 1, self._nth(made, _ORDINALS[word])
         if word == _MIDDLE and len(made) % 2 == 0:
             return
@@ -285,12 +289,21 @@ class _Search:
             asked = frozenset(self.said.get(noun, ()))
             yield at + 1, self._fitting(asked, [])
             yield from self._with_things(asked, at + 1)
-        if self._word(at) in ("else", "otherwise", "other") and self._word(at + 1) in _PART:
-            elses = tuple(
-                t.target for t in self.program.transitions.values() if self.program.is_else(t.id)
-            )
-            yield at + 2, elses
+        yield from ((end, self._elses) for end in self._otherwise(at))
         yield from self._thing_part(at)
+
+    def _otherwise(self, at: int) -> Iterator[int]:
+        """Where `else branch`, `(the) otherwise` or `what happens otherwise` ends."""
+        if self._word(at) in ("else", "otherwise", "other") and self._word(at + 1) in _PART:
+            yield at + 2
+        elif self._word(at) == "otherwise" and self._word(at - 1) in _DETERMINERS:
+            yield at + 1
+        yield from self._one_of(at, _ELSE)
+
+    @property
+    def _elses(self) -> tuple[str, ...]:
+        transitions = self.program.transitions.values()
+        return tuple(t.target for t in transitions if self.program.is_else(t.id))
 
     def _part(self, at: int) -> Found:
         """What follows `part`: `where you fetch the tray`, `with the tray`, `where she dismisses it`."""

@@ -12,6 +12,7 @@ from polaris_nl.language.interpretation import Interpretation, Question, Reading
 from polaris_nl.language.protocol import Language
 from polaris_nl.language.reading import steps_of
 from polaris_nl.language.refusals import Refusals
+from polaris_nl.language.reordering import says_order, there_already
 from polaris_nl.language.repair import Repairs
 from polaris_nl.language.scope import Misfit, Scope, Unclear
 from polaris_nl.language.segment import Cut
@@ -163,6 +164,10 @@ class Statements:
         branched = builder.anchor is not None
         latest = builder.program.checkpoints[builder.here].goals
         steps, scope = steps_of(cut, self._language.resolver, dialogue.scope, branched, latest)
+        order = _in_order(cut, steps, builder.program)
+        if order is not None:
+            builder.put_in_order(order)
+            return steps, scope
         for step in steps:
             builder.add(step)
         return steps, scope
@@ -209,6 +214,18 @@ class Statements:
         about = "What should I do then?"
         meant = Interpretation(utterance, "question", about, question=Question(about))
         return meant, replace(dialogue, pending=Pending(utterance, "", kind="then"))
+
+
+def _in_order(cut: Cut, steps: Sequence[Step], program: Automaton) -> tuple[str, ...] | None:
+    """The steps that are only put in another order, or None where something is new; one alone comes first."""
+    if not says_order([w for item in cut.items for w in item.text.split()]):
+        return None
+    if any(step.role != "then" or step.when for step in steps):
+        return None
+    wanted = [step.goals for step in steps]
+    if len(wanted) == 1:
+        wanted += [program.checkpoints[c].goals for c in program.children(START)[:1]]
+    return there_already(program, wanted)
 
 
 def _understood(cuts: Sequence[Cut]) -> list[Cut]:

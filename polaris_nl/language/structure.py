@@ -15,6 +15,7 @@ from polaris_nl.automaton.edits import (
     apply,
 )
 from polaris_nl.language.naming import Names
+from polaris_nl.language.reordering import put_in_order
 from polaris_nl.language.scope import Misfit
 from polaris_nl.model.formula import Goal, Literal, literals_in
 from polaris_nl.model.world import World
@@ -75,6 +76,12 @@ class Builder:
             self._branch(step)
         else:
             self._next(step)
+
+    def put_in_order(self, order: Sequence[str]) -> None:
+        """Puts checkpoints that are there in another order, and goes on after the last of them."""
+        for edit in put_in_order(self.program, order):
+            self._edited(edit, order[-1])
+        self.touched = [c for c in order if self.edits]
 
     def _otherwise(self, step: Step) -> None:
         source = self.anchor if self.anchor is not None else self.here

@@ -9,11 +9,11 @@ from functools import cached_property, lru_cache
 
 from polaris_nl.automaton.automaton import Automaton
 from polaris_nl.automaton.edits import apply_all
-from polaris_nl.language.answering import Answering
+from polaris_nl.language.answering import Answering, PendingReply
 from polaris_nl.language.asking import Asking
 from polaris_nl.language.changes import Changes
 from polaris_nl.language.clauses import ClauseFinder
-from polaris_nl.language.commands import Commands, Told
+from polaris_nl.language.commands import COMMAND_SAYS, REPLIES, SAID_ALONE, Commands, Told
 from polaris_nl.language.conditions import condition_in
 from polaris_nl.language.corrections import Corrections
 from polaris_nl.language.dialogue import Dialogue, Latest, Pending, recalled
@@ -24,7 +24,6 @@ from polaris_nl.language.lexicon import Lexicon
 from polaris_nl.language.mention import Mention
 from polaris_nl.language.mentions import MentionFinder
 from polaris_nl.language.naming import Names
-from polaris_nl.language.parts import LEAST, behind_told, parts
 from polaris_nl.language.patterns import Patterns, strip
 from polaris_nl.language.phrases import recogniser_phrases
 from polaris_nl.language.queries import answer_to, contrast_asked
@@ -33,6 +32,7 @@ from polaris_nl.language.references import References, UnclearStep
 from polaris_nl.language.refusals import Refusals
 from polaris_nl.language.repair import Repairs
 from polaris_nl.language.resolve import Resolver
+from polaris_nl.language.salvage import Salvage
 from polaris_nl.language.scope import Unclear
 from polaris_nl.language.segment import Cut, Segmenter, cheapest
 from polaris_nl.language.spelling import Spelling
@@ -91,6 +91,9 @@ class Understanding:
         self._corrections = Corrections(self, self._changes, references)
         self._answering = Answering(self, self._commands, self._corrections, references)
         self._statements = Statements(self, repairs, self._refusals, self._spelling.known)
+        self._salvage = Salvage(
+            self, self._commands, self._segmenter, self._spelling, self._with_remarks
+        )
 
     def interpret(
         self, utterance: str, program: Automaton, dialogue: Dialogue | None = None
@@ -125,7 +128,9 @@ class Understanding:
         if pending is None:
             meant, after = self._fresh(utterance, tokens, program, dialogue)
             return meant, self._remembered(meant, after, dialogue, tokens, program)
-        answered = self._answering.answered(utterance, bare, pending, program, dialogue)
+        answered = self._answering.answered(
+            PendingReply(utterance, bare, pending, program, dialogue)
+        )
         if answered is not None:
             return answered
         unanswered = replace(dialogue, scope=replace(dialogue.scope, choices={}))
@@ -150,21 +155,7 @@ class Understanding:
             program: the program it is about.
             dialogue: what was said before it, and that it was refused.
         """
-        tokens = self._spelling.mended(words(refused.utterance), program)
-        if refused.refusal is None or not LEAST < len(tokens) <= MOST_WORDS:
-            return refused, dialogue
-        clauses = self._segmenter.clauses_in(tokens, self.mentions(tokens))
-        for part in parts(tokens, clauses, self._spelling.known):
-            text = " ".join(strip(part, (*self.fillers, *_LEADING)))
-            meant, _ = self._fresh(text, part, program, dialogue)
-            if meant.outcome == "applied" or meant.query is not None or meant.command == "undo":
-                reason = refused.refusal.reason.removesuffix(self.examples()).rstrip()
-                say = f'{reason} Did you mean only "{text}"?'
-                pending = Pending(text, "", kind="part")
-                return replace(
-                    refused, say=say, refusal=replace(refused.refusal, reason=say)
-                ), replace(dialogue, pending=pending)
-        return refused, dialogue
+        return self._salvage.offered(refused, program, dialogue)
 
     def _remembered(
         self,
@@ -220,12 +211,12 @@ class Understanding:
     ) -> tuple[Interpretation, Dialogue]:
         """What is meant, without what is only told around it; by a "stop" where nothing else is."""
         meant, after = self._with_remarks(utterance, tokens, program, dialogue)
-        if meant.outcome == "refused":
-            behind = self._behind_told(utterance, tokens, program, dialogue)
-            if behind is not None:
-                return behind
-        halting = self._halting(utterance, tokens) if meant.outcome == "refused" else None
-        return (halting or meant), after
+        if meant.outcome != "refused":
+            return meant, after
+        behind = self._salvage.behind_told(utterance, tokens, program, dialogue)
+        if behind is not None:
+            return behind
+        return self._salvage.halting(utterance, tokens) or meant, after
 
     def _with_remarks(
         self, utterance: str, tokens: Sequence[str], program: Automaton, dialogue: Dialogue
@@ -240,37 +231,9 @@ class Understanding:
         meant, after = self._whole(utterance, tokens, program, dialogue)
         if meant.outcome == "refused":
             again, then = self._whole(utterance, kept, program, dialogue)
-            if again.outcome != "refused" and again.command not in _SAID_ALONE:
+            if again.outcome != "refused" and again.command not in SAID_ALONE:
                 return again, then
         return meant, after
-
-    def _behind_told(
-        self, utterance: str, tokens: Sequence[str], program: Automaton, dialogue: Dialogue
-    ) -> tuple[Interpretation, Dialogue] | None:
-        """What is asked for behind what is only told, in whatever words; None where nothing is."""
-        mentions = self.mentions(tokens)
-        found = behind_told(tokens, self._segmenter.clauses_in(tokens, mentions), mentions)
-        if found is None:
-            return None
-        start, named = found
-        scope = dialogue.scope
-        for name in named:
-            scope = scope.after((name,))
-        heard = replace(dialogue, scope=scope)
-        meant, after = self._with_remarks(utterance, tokens[start:], program, heard)
-        if meant.outcome == "refused" or meant.command in _SAID_ALONE:
-            return None
-        return replace(meant, aside=(" ".join(tokens[:start]), *meant.aside)), after
-
-    def _halting(self, utterance: str, tokens: Sequence[str]) -> Interpretation | None:
-        """A stop or pause with words that aren't understood; where it is heard, the quick words act on it."""
-        found = self._commands.halting(tokens)
-        if found is None:
-            return None
-        command, rest = found
-        return Interpretation(
-            utterance, "command", _COMMAND_SAYS[command], command=command, aside=(rest,)
-        )
 
     def _whole(
         self, utterance: str, tokens: Sequence[str], program: Automaton, dialogue: Dialogue
@@ -283,7 +246,7 @@ class Understanding:
         asked, dialogue = dialogue.asked, replace(dialogue, asked=None)
         core = self._corrections.core(tokens)
         told = self._commands.meant(core.words) if core.tokens != tuple(bare) else None
-        if told is not None and not _REPLIES.intersection(told.commands):
+        if told is not None and not REPLIES.intersection(told.commands):
             return self._told(utterance, told), dialogue
         contrasted = contrast_asked(self, utterance, self._asking, tokens, program, dialogue)
         if contrasted is not None:
@@ -353,7 +316,7 @@ class Understanding:
         if len(told.commands) > 1:
             names = " or ".join(f'"{c.replace("-", " the ")}"' for c in told.commands)
             return self.refused(utterance, f"One thing at a time, please: {names} first?")
-        say = self.help if command == "help" else _COMMAND_SAYS.get(command, "")
+        say = self.help if command == "help" else COMMAND_SAYS.get(command, "")
         return Interpretation(utterance, "command", say, command=command, agrees=told.agrees)
 
     def asks_for(self, tokens: Sequence[str]) -> bool:
@@ -400,16 +363,3 @@ class Understanding:
 
 _KEEPING = ("help", "repeat", "read-program", "read-plan", "status", "yes")
 """Commands after which an open question can still be answered."""
-_LEADING = (("and",), ("then",), ("so",), ("but",))
-"""Words that go on with what isn't offered."""
-_REPLIES = frozenset(("yes", "no"))
-_SAID_ALONE = _REPLIES | {"run", "resume", "new", "load", "save", "quit"}
-"""Commands that nobody gives a reason for: "let's get going or we'll miss it" is said to others."""
-_COMMAND_SAYS = {
-    "stop": "Stopping.",
-    "pause": "Pausing.",
-    "resume": "Going on.",
-    "yes": "There is nothing to say yes to.",
-    "no": "There is nothing to say no to.",
-    "quit": "Goodbye.",
-}
