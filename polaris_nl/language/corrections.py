@@ -12,6 +12,7 @@ from polaris_nl.automaton.edits import (
     RenameCheckpoint,
     SetConditional,
     SetGoals,
+    apply,
     apply_all,
 )
 from polaris_nl.language.another_condition import another_condition
@@ -40,7 +41,7 @@ from polaris_nl.language.rereading import Rereading
 from polaris_nl.language.retractions import negated, place_of
 from polaris_nl.language.scope import Misfit, Unclear
 from polaris_nl.language.structure import Builder, Step
-from polaris_nl.language.tokens import words
+from polaris_nl.language.tokens import PhraseSet, words
 from polaris_nl.model.errors import EditError
 from polaris_nl.model.formula import Literal
 from polaris_nl.model.text import listed, sentence
@@ -49,7 +50,13 @@ WHAT_INSTEAD = "I don't see what should be changed; say what you meant, or undo.
 _MORE = ("also", "too", "as well", "again")
 """Words of a sentence that adds to what was said, however it starts."""
 NOTHING_OF_THAT = "That isn't asked for, so there is nothing to leave out."
-_ONLY, _PLEASE, _INSTEAD = "only", "please", "instead"
+_OR = (("or", "else"), ("or",), ("alternatively",), ("or", "alternatively"))
+"""Words that lead to another way on."""
+_PLEASE, _INSTEAD = "please", "instead"
+_SURELY = ("actually", "really", "also", "still", "indeed", "definitely", "certainly")
+"""Words that stress a condition."""
+_LIMITING = frozenset(("only", "wait"))
+"""Words by which what is there waits for something."""
 _ON = ("and", "but", "then", "please")
 """Words between what isn't wanted and what is."""
 
@@ -97,6 +104,9 @@ class Corrections:
         words = core.words
         if core.strength and (again := self._again.edited(utterance, words, program, dialogue)):
             return again
+        other = self._other_way(utterance, words, touched, program, dialogue)
+        if other is not None:
+            return other
         mentions = self._language.mentions(words)
         instead = put_instead(self._language, self._changes, words, touched, program, dialogue)
         if instead is not None:
@@ -126,8 +136,11 @@ class Corrections:
             taken = self._taken_back(utterance, core, program, dialogue)
             if taken is not None or not core.strength or core.needless:
                 return taken
-        if not core.strength:
-            return self._limited(utterance, core, program, dialogue)
+        limited = self._limited(utterance, core, program, dialogue) or self._done_then(
+            utterance, core, program, dialogue
+        )
+        if limited is not None or not core.strength:
+            return limited
         edited = self._language.edited(utterance, core.tokens, program, dialogue)
         if edited is not None:
             return edited
@@ -258,19 +271,47 @@ class Corrections:
     def _limited(
         self, utterance: str, core: Core, program: Automaton, dialogue: Dialogue
     ) -> MeantThen | None:
-        """`only go home if she dismisses it`, where going home was asked for anyway: now it waits for that."""
-        if _ONLY not in words(utterance):
+        """`only go home if she dismisses it`, where going home was asked for already: now it waits for that."""
+        if not _LIMITING.intersection(words(utterance)):
             return None
-        steps = self._changes.steps(core.tokens, dialogue)
-        if len(steps) != 1 or not steps[0].when or not steps[0].goals:
+        said = [w for w in core.tokens if w not in _SURELY]
+        steps = self._changes.steps(said, dialogue)
+        if not steps or not (steps[0].when and steps[0].goals):
+            return None
+        first, *rest = steps
+        if any(step.role != "else" for step in rest):
             return None
         for arrow in reversed(list(program.transitions.values())):
-            if not arrow.when and set(program.checkpoints[arrow.target].goals) == set(
-                steps[0].goals
-            ):
+            there = set(program.checkpoints[arrow.target].goals)
+            if there == set(first.goals) and arrow.conditional < set(first.when):
+                limit: Edit = SetConditional(arrow.id, first.when)
+                builder = self._builder(apply(program, limit), arrow.target, arrow.source)
+                for step in rest:
+                    builder.add(step)
                 say = steps_in_words(steps, self._language.wording)
-                edit = SetConditional(arrow.id, steps[0].when)
-                return self._applied(utterance, [edit], say, program, dialogue, [arrow.target])
+                edits, touched = [limit, *builder.edits], [arrow.target, *builder.touched]
+                return self._applied(utterance, edits, say, program, dialogue, touched)
+        return None
+
+    def _done_then(
+        self, utterance: str, core: Core, program: Automaton, dialogue: Dialogue
+    ) -> MeantThen | None:
+        """`if she dismisses it don't go home, go to the hall`, where going home was asked for then."""
+        if "not" not in core.tokens or core.tokens[:2] == DO_NOT:
+            return None
+        steps = self._changes.steps(core.tokens, dialogue)
+        if len(steps) != 2 or not (steps[0].when and steps[1].goals):
+            return None
+        denied = [g for g in steps[0].goals if isinstance(g, Literal) and not g.positive]
+        wrong = {g.negation for g in denied}
+        for arrow in program.transitions.values():
+            there = program.checkpoints[arrow.target].goals
+            if arrow.conditional == set(steps[0].when) and wrong & set(there):
+                goals = (*(g for g in there if g not in wrong), *steps[1].goals)
+                names = self._language.names.renamed(program, arrow.target, goals, arrow.when)
+                say = f"{goals_in_words(steps[1].goals, self._language.wording)} instead"
+                edits = [SetGoals(arrow.target, goals), *names]
+                return self._applied(utterance, edits, say, program, dialogue, [arrow.target])
         return None
 
     def _taken_back(
@@ -278,7 +319,10 @@ class Corrections:
     ) -> MeantThen | None:
         """`don't go home, go to the kitchen`, where going home was asked for: that step is gone, or another."""
         there = [c for c in program.checkpoints if c != START]
-        for end in range(len(core.tokens), 2, -1):
+        size = len(core.tokens)
+        # "Don't open it, close it" as a whole forbids both.
+        other = [at for at in range(size - 1, 2, -1) if self._asks_other(core.tokens[at:])]
+        for end in dict.fromkeys((*other, *range(size, 2, -1))):
             try:
                 steps = self._changes.steps(core.tokens[:end], dialogue)
             except Unclear:
@@ -301,6 +345,12 @@ class Corrections:
                 dialogue = replace(dialogue, scope=scope)
             return self._sentence(utterance, Core(tuple(rest), 2), touched, program, dialogue)
         return None
+
+    def _asks_other(self, tokens: Sequence[str]) -> bool:
+        """Whether tokens are what is asked for in the place of what is taken back."""
+        rest = trimmed(tokens)
+        rest = rest[1:] if rest and rest[0] == "but" else rest
+        return self._language.asks_for(rest)
 
     def _sentence(
         self,
@@ -360,17 +410,52 @@ class Corrections:
             edits, say = [], NOTHING_CHANGES
         return self._applied(utterance, edits, say, program, dialogue, touched)
 
+    def _other_way(
+        self,
+        utterance: str,
+        words: Sequence[str],
+        touched: Sequence[str],
+        program: Automaton,
+        dialogue: Dialogue,
+    ) -> MeantThen | None:
+        """`or if she's in, ...`, `if she's in, go to the hall instead of home`: beside what is done else."""
+        start = next((len(w) for w in _OR if tuple(words[: len(w)]) == w), 0)
+        contrast = PhraseSet(self._language.grammar.common.contrast)
+        end = next((i for i in range(1, len(words)) if contrast.length_at(words, i)), len(words))
+        if not touched or not (start or end < len(words)):
+            return None
+        steps = self._changes.steps(words[start:end], dialogue)
+        if len(steps) != 1 or not (steps[0].when and steps[0].goals):
+            return None
+        wanted = set(steps[0].when)
+        if any(arrow.conditional == wanted for arrow in program.transitions.values()):
+            return None
+        named = {
+            c.entity for m in self._language.mentions(words[end:]) for x in m for c in x.candidates
+        }
+        made = (*reversed(touched), *reversed([c for c in program.checkpoints if c != START]))
+        place = next(
+            (c for c in made if end == len(words) or named & set(used_in(program, [c]))), None
+        )
+        incoming = program.incoming(place) if place is not None else None
+        if incoming is None or (incoming.when and not start):
+            return None
+        return self._beside(utterance, steps[0], incoming.source, program, dialogue)
+
     def _beside(
         self, utterance: str, step: Step, source: str, program: Automaton, dialogue: Dialogue
     ) -> MeantThen:
         """Another way on from a checkpoint: "if it's open, take it to the sink instead"."""
-        builder = Builder(self._language.world, self._language.names, program, source)
+        builder = self._builder(program, source)
         builder.add(step)
         say = steps_in_words([step], self._language.wording)
         meant, after = self._applied(
             utterance, builder.edits, say, program, dialogue, builder.touched
         )
         return meant, replace(after, here=builder.here, anchor=builder.anchor)
+
+    def _builder(self, program: Automaton, here: str, anchor: str | None = None) -> Builder:
+        return Builder(self._language.world, self._language.names, program, here, anchor)
 
     def _applied(
         self,

@@ -15,6 +15,7 @@ from polaris_nl.language.changes import Changes
 from polaris_nl.language.clauses import ClauseFinder
 from polaris_nl.language.commands import COMMAND_SAYS, REPLIES, SAID_ALONE, Commands, Told
 from polaris_nl.language.conditions import condition_in
+from polaris_nl.language.cores import DO_NOT
 from polaris_nl.language.corrections import Corrections
 from polaris_nl.language.dialogue import Dialogue, Latest, Pending, recalled
 from polaris_nl.language.generate import read_back
@@ -252,7 +253,8 @@ class Understanding:
         if contrasted is not None:
             return contrasted
         changed = self._corrections.corrected(utterance, core, program, dialogue)
-        if core.strength and (changed is None or changed[0].outcome != "applied"):
+        takes_back = core.strength or core.tokens[:2] == DO_NOT
+        if takes_back and (changed is None or changed[0].outcome != "applied"):
             kept = self._segmenter.before_remark(core.tokens, self.mentions(core.tokens))
             if len(kept) < len(core.tokens):
                 core = replace(core, tokens=kept)
