@@ -38,6 +38,7 @@ from polaris_nl.language.patterns import Match, Patterns
 from polaris_nl.language.protocol import Language
 from polaris_nl.language.references import References, meant
 from polaris_nl.language.rereading import Rereading
+from polaris_nl.language.reshaping import removed
 from polaris_nl.language.retractions import negated, place_of
 from polaris_nl.language.scope import Misfit, Unclear
 from polaris_nl.language.structure import Builder, Step
@@ -242,7 +243,7 @@ class Corrections:
             words = listed([self._language.wording.entity(e) for e in best])
             name = program.checkpoints[checkpoint].name
             if not kept:
-                return [RemoveCheckpoint(checkpoint)], f"{name} is gone"
+                return removed(program, checkpoint), f"{name} is gone"
             return [SetGoals(checkpoint, kept)], f"{name} is without {words} now"
         return None
 
@@ -310,7 +311,7 @@ class Corrections:
                 goals = (*(g for g in there if g not in wrong), *steps[1].goals)
                 names = self._language.names.renamed(program, arrow.target, goals, arrow.when)
                 say = f"{goals_in_words(steps[1].goals, self._language.wording)} instead"
-                edits = [SetGoals(arrow.target, goals), *names]
+                edits: list[Edit] = [SetGoals(arrow.target, goals), *names]
                 return self._applied(utterance, edits, say, program, dialogue, [arrow.target])
         return None
 

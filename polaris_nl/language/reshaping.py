@@ -14,12 +14,12 @@ from polaris_nl.automaton.edits import (
     RenameCheckpoint,
     SetConditional,
     SetGoals,
-    apply,
     apply_all,
 )
 from polaris_nl.language.naming import Names
+from polaris_nl.language.subjects import subjects
 from polaris_nl.model.errors import EditError
-from polaris_nl.model.formula import Literal
+from polaris_nl.model.formula import Literal, literals_in
 from polaris_nl.model.text import listed
 
 Reshaped = tuple[list[Edit], str, list[str]]
@@ -309,6 +309,22 @@ def several_removed(program: Automaton, these: Sequence[str]) -> Reshaped:
     these = list(dict.fromkeys(these))
     names = [program.checkpoints[c].name for c in these]
     say = f"{listed(names)} {'is' if len(names) == 1 else 'are'} gone"
+    edits: list[Edit] = []
     for checkpoint in these:
-        program = apply(program, RemoveCheckpoint(checkpoint))
-    return [RemoveCheckpoint(c) for c in these], say, []
+        edits += removed(apply_all(program, edits), checkpoint)
+    return edits, say, []
+
+
+def removed(program: Automaton, this: str) -> list[Edit]:
+    """Without a checkpoint, and without its condition where that is about what was to be done there.
+
+    After "if the fridge is open close it, then go home", nothing waits for the fridge that isn't closed;
+    after "once she acknowledges it fill the tray, then bring it", bringing it does.
+    """
+    incoming = program.incoming(this)
+    beside = program.outgoing(incoming.source) if incoming is not None else ()
+    done = [x for goal in program.checkpoints[this].goals for x in literals_in(goal)]
+    guards = incoming is not None and bool(incoming.when) and len(beside) == 1
+    if incoming is not None and guards and subjects(incoming.when) <= subjects(done):
+        return [SetConditional(incoming.id, ()), RemoveCheckpoint(this)]
+    return [RemoveCheckpoint(this)]

@@ -17,6 +17,7 @@ from polaris_nl.automaton.edits import (
 from polaris_nl.language.naming import Names
 from polaris_nl.language.reordering import put_in_order
 from polaris_nl.language.scope import Misfit
+from polaris_nl.language.subjects import subjects
 from polaris_nl.model.formula import Goal, Literal, literals_in
 from polaris_nl.model.world import World
 
@@ -179,10 +180,10 @@ class Builder:
 
     def _sibling(self, when: Sequence[Literal]) -> str | None:
         """Where the way to here branched on a condition about the same things."""
-        about = _subjects(when)
+        about = subjects(when)
         for transition in reversed(self.program.path(self.here)):
             ways = self.program.outgoing(transition.source)
-            if about & {s for way in ways for s in _subjects(way.when)}:
+            if about & {s for way in ways for s in subjects(way.when)}:
                 return transition.source
         return None
 
@@ -194,8 +195,3 @@ class Builder:
             if any(fits(x) for goal in goals for x in literals_in(goal)):
                 return checkpoint
         return None
-
-
-def _subjects(literals: Sequence[Literal]) -> set[str]:
-    """What literals are about: the first argument, but for what a person has the thing."""
-    return {x.args[-1 if x.predicate == "has" else 0] for x in literals if x.args}
