@@ -191,6 +191,8 @@ class Changes:
                 name = program.checkpoints[this].name
             if intent != "replace":
                 kept = program.checkpoints[this].goals
+                if any(g.negation in kept for g in goals if isinstance(g, Literal)):
+                    raise Misfit("")
                 return [SetGoals(this, (*kept, *goals))], f"in {name}, also {words}", [this]
             incoming = program.incoming(this)
             names = self._language.names.renamed(

@@ -29,6 +29,7 @@ from polaris_nl.language.conditions import condition_in
 from polaris_nl.language.contrasted import put_instead
 from polaris_nl.language.cores import AROUND, DO_NOT, NEEDLESS, Core, Cores, trimmed
 from polaris_nl.language.dialogue import Dialogue, Latest
+from polaris_nl.language.elsewhere import exchanged_places
 from polaris_nl.language.exchange import exchanged, used_in, without
 from polaris_nl.language.generate import goals_in_words, steps_in_words
 from polaris_nl.language.goal_relations import flat
@@ -384,6 +385,7 @@ class Corrections:
         if incoming is None or not step.goals:
             return None
         there = set(program.checkpoints[target].goals)
+        step = replace(step, goals=exchanged_places(step.goals, program.checkpoints[target].goals))
         if (
             core.strength < 2
             and step.when

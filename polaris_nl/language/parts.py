@@ -54,6 +54,27 @@ _ASKING = frozenset(("where", "what", "which", "who", "how", "why", "undo"))
 _LEADING = frozenset(("if", "when", "once", "unless", "could", "can", "would", "please"))
 """Words that may stand before what is asked for, and belong to it."""
 
+_OPENING = frozenset(("because", "since", "as", "cause", "that", "and", "so"))
+"""Words that what is told may begin with."""
+_NAMING = frozenset(("the", "her", "his", "their", "your", "mine", "who", "which"))
+_DUTY = frozenset(
+    (
+        "should",
+        "must",
+        "shall",
+        "let",
+        "please",
+        "you",
+        "needn't",
+        "want",
+        "wants",
+        "rather",
+        "like",
+        "prefer",
+    )
+)
+"""Words of what is asked for after all."""
+
 
 def behind_told(
     tokens: Sequence[str],
@@ -89,6 +110,52 @@ def behind_told(
             return None  # What "it" is isn't known.
         return start, named or ()
     return None
+
+
+def without_told(
+    tokens: Sequence[str], clauses: Sequence[Sequence[Clause]]
+) -> tuple[tuple[str, ...], tuple[str, ...]] | None:
+    """What is asked for between commas, and what is only told there; None where nothing is told.
+
+    `scrap the reminder, the staff do that themselves`: what is told has a subject and its verb, asks for
+    nothing, and forbids nothing. Only what is typed has commas.
+
+    Args:
+        tokens: the utterance.
+        clauses: those that start at each position.
+    """
+    ends = [at for at, token in enumerate(tokens) if token in (BREAK, COMMA)]
+    spans = list(zip([0, *(at + 1 for at in ends)], [*ends, len(tokens)], strict=True))
+    spans = [(start, end) for start, end in spans if start < end]
+    told = [
+        span for span in spans if _only_tells(tokens[span[0] : span[1]], clauses[span[0] : span[1]])
+    ]
+    if not told or len(told) == len(spans):
+        return None
+    kept: list[str] = []
+    for start, end in spans:
+        if (start, end) not in told:
+            kept += [COMMA] * bool(kept) + list(tokens[start:end])
+    aside = " ".join(token for start, end in told for token in tokens[start:end])
+    return tuple(kept), (aside,)
+
+
+def _only_tells(words: Sequence[str], clauses: Sequence[Sequence[Clause]]) -> bool:
+    """Whether a part between commas only tells something."""
+    if words[0] in _OPENING:
+        words, clauses = words[1:], clauses[1:]
+    if len(words) < LEAST or not (words[0] in SUBJECTS or words[0] in _NAMING):
+        return False
+    if not BE_OR_DO.union(_TOLD).intersection(words[1:]) and not _verbal(words[1]):
+        return False
+    if _CHANGING.union(_CORRECTING, _STEPS, _DUTY).intersection(words):
+        return False
+    return not any(map(_wished, chain(*clauses)))
+
+
+def _verbal(word: str) -> bool:
+    """Whether a word behind a pronoun looks like a verb: "he likes", "she dropped"."""
+    return len(word) > 3 and word.endswith(("s", "ed"))
 
 
 def _polite(tokens: Sequence[str], at: int) -> int:

@@ -9,7 +9,7 @@ from polaris_nl.automaton.automaton import Automaton
 from polaris_nl.language.commands import COMMAND_SAYS, SAID_ALONE, Commands
 from polaris_nl.language.dialogue import Dialogue, Pending
 from polaris_nl.language.interpretation import Interpretation
-from polaris_nl.language.parts import LEAST, behind_told, parts
+from polaris_nl.language.parts import LEAST, behind_told, parts, without_told
 from polaris_nl.language.patterns import strip
 from polaris_nl.language.protocol import Language, Meant
 from polaris_nl.language.segment import Segmenter
@@ -64,6 +64,21 @@ class Salvage:
         if meant.outcome == "refused" or meant.command in SAID_ALONE:
             return None
         return replace(meant, aside=(" ".join(tokens[:start]), *meant.aside)), after
+
+    def between_commas(
+        self, utterance: str, tokens: Sequence[str], program: Automaton, dialogue: Dialogue
+    ) -> Meant | None:
+        """What is asked for without what is only told before or behind a comma; None where nothing is."""
+        found = without_told(
+            tokens, self._segmenter.clauses_in(tokens, self._language.mentions(tokens))
+        )
+        if found is None:
+            return None
+        kept, aside = found
+        meant, after = self._reads(utterance, kept, program, dialogue)
+        if meant.outcome == "refused" or meant.command in SAID_ALONE:
+            return None
+        return replace(meant, aside=(*aside, *meant.aside)), after
 
     def halting(self, utterance: str, tokens: Sequence[str]) -> Interpretation | None:
         """A stop or pause with words that aren't understood; where it is heard, the quick words act on it."""

@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 
 from polaris_nl.automaton.automaton import START, Automaton
 from polaris_nl.language.dialogue import Dialogue, Pending
-from polaris_nl.language.generate import steps_in_words
+from polaris_nl.language.elsewhere import put_elsewhere
+from polaris_nl.language.generate import goals_in_words, steps_in_words
 from polaris_nl.language.interpretation import Interpretation, Question, Reading
 from polaris_nl.language.protocol import Language
 from polaris_nl.language.reading import steps_of
@@ -18,6 +19,7 @@ from polaris_nl.language.scope import Misfit, Scope, Unclear
 from polaris_nl.language.segment import Cut
 from polaris_nl.language.structure import Builder, Step
 from polaris_nl.language.tokens import phrase
+from polaris_nl.model.text import sentence
 
 AS_IT_IS = "It is like that already; nothing changes."
 MOST_REPAIRED = 60
@@ -150,6 +152,9 @@ class Statements:
                 scope=scope,
             )
             say = steps_in_words(steps, self._language.wording)
+            if builder.instead:
+                goals = [goal for step in steps for goal in step.goals]
+                say = sentence(f"{goals_in_words(goals, self._language.wording)} instead")
             aside = tuple(i.text for i in cut.items if i.role in ("topic", "fact"))
             meant = Interpretation(utterance, "applied", say, tuple(builder.edits), aside=aside)
             yield _Tried(cut, cut.cost, say, meant, after)
@@ -167,6 +172,10 @@ class Statements:
         order = _in_order(cut, steps, builder.program)
         if order is not None:
             builder.put_in_order(order)
+            return steps, scope
+        elsewhere = put_elsewhere(self._language, cut, steps, builder.program)
+        if elsewhere is not None:
+            builder.change(*elsewhere)
             return steps, scope
         for step in steps:
             builder.add(step)

@@ -13,6 +13,7 @@ from polaris_nl.automaton.edits import (
     RenameCheckpoint,
     SetGoals,
     apply,
+    apply_all,
 )
 from polaris_nl.language.naming import Names
 from polaris_nl.language.reordering import put_in_order
@@ -51,6 +52,7 @@ class Builder:
     Attributes:
         here: the checkpoint that was edited last, after which the next step goes.
         anchor: the checkpoint at which the latest branch began, for "otherwise".
+        instead: what is there was changed, and nothing added.
     """
 
     world: World
@@ -60,6 +62,7 @@ class Builder:
     anchor: str | None = None
     edits: list[Edit] = field(default_factory=list)
     touched: list[str] = field(default_factory=list)
+    instead: bool = False
 
     def add(self, step: Step) -> None:
         """Puts a step into the program.
@@ -83,6 +86,13 @@ class Builder:
         for edit in put_in_order(self.program, order):
             self._edited(edit, order[-1])
         self.touched = [c for c in order if self.edits]
+
+    def change(self, edits: Sequence[Edit], touched: Sequence[str]) -> None:
+        """Changes checkpoints that are there; what is said next goes on where it would have gone on."""
+        self.program = apply_all(self.program, edits)
+        self.edits += edits
+        self.touched = [*touched]
+        self.instead = True
 
     def _otherwise(self, step: Step) -> None:
         source = self.anchor if self.anchor is not None else self.here

@@ -215,6 +215,7 @@ class Understanding:
         if meant.outcome != "refused":
             return meant, after
         behind = self._salvage.behind_told(utterance, tokens, program, dialogue)
+        behind = behind or self._salvage.between_commas(utterance, tokens, program, dialogue)
         if behind is not None:
             return behind
         return self._salvage.halting(utterance, tokens) or meant, after

@@ -25,11 +25,15 @@ class Verbs:
         bases: verbs in the imperative: `bring`, `put`.
         irregular: past participles that no rule makes, by verb: `{"bring": "brought"}`; several are
             written with spaces.
+
+    Attributes:
+        imperatives: the verbs as they stand in requests.
     """
 
     def __init__(self, bases: Iterable[str], irregular: Mapping[str, str]) -> None:
         self._bases: dict[tuple[str, Inflection], tuple[str, ...]] = {}
-        for base in sorted(set(bases)):
+        self.imperatives = frozenset(bases)
+        for base in sorted(self.imperatives):
             self._add(gerund(base), "gerund", base)
             for past in irregular.get(base, participle(base)).split():
                 self._add(past, "participle", base)

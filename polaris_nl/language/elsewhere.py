@@ -1,0 +1,105 @@
+"""Where a thing should be, said of one that a step takes elsewhere: "the wine can go on the table"."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from polaris_nl.automaton.automaton import START, Automaton
+from polaris_nl.automaton.edits import Edit, SetGoals
+from polaris_nl.language.goal_relations import says_a_place, thing_placed
+from polaris_nl.language.protocol import Language
+from polaris_nl.language.requests import SUBJECTS
+from polaris_nl.language.reshaping import removed
+from polaris_nl.language.segment import Cut
+from polaris_nl.language.structure import Step
+from polaris_nl.model.formula import Formula, Goal, Imply, Literal, Quantified
+
+_NEXT = frozenset((
+    "then", "next", "after", "afterwards", "later", "finally", "again", "too", "also", "first", "last",
+    "before", "eventually", "besides", "as", "once"
+))  # fmt: skip
+"""Words of what is to be done on top of what is there."""
+_LEFT = frozenset(("leave", "keep"))
+"""Verbs by which something stays as it is."""
+
+
+def put_elsewhere(
+    language: Language, cut: Cut, steps: Sequence[Step], program: Automaton
+) -> tuple[list[Edit], list[str]] | None:
+    """The edits that put goals in the place of those that take the same things elsewhere.
+
+    Only what is said of things ("the wine goes on the table"), not what is to be done ("put the wine on
+    the table"): people dictate the second in a row, and the first says how something should be after all.
+
+    Args:
+        language: its verbs, and names for checkpoints.
+        cut: the utterance, cut into clauses.
+        steps: what it asks for.
+        program: what is there.
+
+    Returns:
+        The edits and the checkpoints they touch; None where something is new, or said as something to be done.
+    """
+    words = [w for item in cut.items for w in item.text.split()]
+    if _NEXT.intersection(words) or words[:1] == ["and"]:
+        return None
+    if _LEFT.intersection(words) and len(steps) == 1 and not steps[0].when:
+        return _left_so(steps[0].goals, program)
+    if not _says_how_it_should_be(cut, language):
+        return None
+    if any(s.when or s.forbidden or s.role != "then" or not s.goals for s in steps):
+        return None
+    changed: dict[str, tuple[Goal, ...]] = {}
+    wanted = [goal for step in steps for goal in step.goals]
+    for goal in wanted:
+        thing = moved(goal)
+        made = [c.id for c in program.checkpoints.values() if c.id != START]
+        places = {c: changed.get(c, program.checkpoints[c].goals) for c in made}
+        there = [c for c, goals in places.items() if thing in map(moved, goals)]
+        if thing is None or len(there) != 1 or goal in places[there[0]]:
+            return None
+        changed[there[0]] = tuple(goal if moved(g) == thing else g for g in places[there[0]])
+    edits: list[Edit] = []
+    for checkpoint, goals in changed.items():
+        incoming = program.incoming(checkpoint)
+        edits.append(SetGoals(checkpoint, goals))
+        when = incoming.when if incoming is not None else ()
+        edits += language.names.renamed(program, checkpoint, goals, when)
+    return edits, list(changed)
+
+
+def exchanged_places(wanted: Sequence[Goal], there: Sequence[Goal]) -> tuple[Goal, ...]:
+    """What is wanted of some things in the place of what was, with what was wanted of others there."""
+    by_thing = {moved(goal): goal for goal in wanted}
+    things = {moved(goal) for goal in there}
+    if None in by_thing or len(by_thing) < len(wanted) or not set(by_thing) <= things:
+        return tuple(wanted)
+    return tuple(by_thing.get(moved(goal), goal) for goal in there)
+
+
+def _left_so(goals: Sequence[Goal], program: Automaton) -> tuple[list[Edit], list[str]] | None:
+    """Without what would change a thing that is to be left as it is: "leave the wardrobe open"."""
+    wrong = {goal.negation for goal in goals if isinstance(goal, Literal)}
+    for checkpoint in reversed(list(program.checkpoints.values())):
+        kept = tuple(goal for goal in checkpoint.goals if goal not in wrong)
+        if kept != checkpoint.goals:
+            if kept:
+                return [SetGoals(checkpoint.id, kept)], [checkpoint.id]
+            return removed(program, checkpoint.id), []
+    return None
+
+
+def _says_how_it_should_be(cut: Cut, language: Language) -> bool:
+    firsts = [item.text.split()[0] for item in cut.items if item.role == "goal"]
+    return bool(firsts) and not (language.verbs.imperatives - SUBJECTS).intersection(firsts)
+
+
+def moved(goal: Formula) -> object:
+    """What a goal takes to a place: a thing, or all of a kind; None where it does nothing of the sort."""
+    if isinstance(goal, Quantified) and isinstance(goal.body, Imply):
+        end = goal.body.conclusion
+        places = isinstance(end, Literal) and end.positive and says_a_place(end)
+        return (goal.quantifier, goal.variables, goal.body.condition) if places else None
+    if isinstance(goal, Literal) and goal.positive and says_a_place(goal):
+        return thing_placed(goal)
+    return None
