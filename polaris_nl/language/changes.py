@@ -30,6 +30,7 @@ from polaris_nl.language.reshaping import (
     conditional,
     cut_after,
     merged,
+    merged_all,
     moved_before,
     moved_behind,
     otherwise,
@@ -171,6 +172,8 @@ class Changes:
             return _ALONE[intent](program, this)
         if intent == "split":
             return split(program, this, self._language.names)
+        if intent == "merge" and not named and "all" in match.tokens:
+            return merged_all(program)
         if intent in _TOGETHER:
             return _TOGETHER[intent](program, *pair(intent, named, latest, program, match.tokens))
         if intent == "connect":

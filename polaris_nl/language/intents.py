@@ -96,7 +96,7 @@ SIGNATURES: Mapping[str, Signature] = {
     "move": Signature("edit", ("k",), ("l",)),
     "move-before": Signature("edit", (), ("k", "l", "x", "y")),
     "swap": Signature("edit", (), ("k", "l")),
-    "merge": Signature("edit", (), ("k", "l")),
+    "merge": Signature("edit", (), ("k", "l", "x", "y")),
     "split": Signature("edit", ("k",)),
     "connect": Signature("edit", ("k", "l"), ("f",)),
     "else": Signature("edit", ("k",)),

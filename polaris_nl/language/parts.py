@@ -57,22 +57,10 @@ _LEADING = frozenset(("if", "when", "once", "unless", "could", "can", "would", "
 _OPENING = frozenset(("because", "since", "as", "cause", "that", "and", "so"))
 """Words that what is told may begin with."""
 _NAMING = frozenset(("the", "her", "his", "their", "your", "mine", "who", "which"))
-_DUTY = frozenset(
-    (
-        "should",
-        "must",
-        "shall",
-        "let",
-        "please",
-        "you",
-        "needn't",
-        "want",
-        "wants",
-        "rather",
-        "like",
-        "prefer",
-    )
-)
+_DUTY = frozenset((
+    "should", "must", "shall", "let", "please", "you", "needn't", "want", "wants", "rather", "like", "prefer",
+    "stay", "stays", "belongs", "goes"
+))  # fmt: skip
 """Words of what is asked for after all."""
 
 

@@ -53,6 +53,8 @@ _SMALL = (
     "it", "her", "him", "them", "me", "us", "there", "out", "for", "inside", "over",
 )  # fmt: skip
 _TAKEN_UP = ("it", "her", "him", "them", "me", "us", "there")
+_ORDER = ("after", "before", "behind", "between")
+"""Words behind which a thing stands for the step that is about it."""
 _BETWEEN = ("", "and", "with", "before", "after", "behind", "to")
 """Words behind "the first" where it stands for the first step."""
 _MOST_THINGS = 3
@@ -342,13 +344,30 @@ class _Search:
             return
         if alone:
             yield at + 1, self._fitting(asked, [])
-        yield from self._with_things(asked, at + 1)
+        for end, ids in self._with_things(asked, at + 1):
+            yield end, ids
+            if self._word(end) in _PART and forms != ("base",):
+                yield end + 1, ids
+
+    def _behind_order(self, at: int) -> bool:
+        """Whether a thing at a position stands for its step: "after the pills"."""
+        before = self.tokens[:at]
+        if before and before[-1] in _DETERMINERS:
+            before = before[:-1]
+        return bool(before) and (
+            before[-1] in _ORDER or (before[-1] == "and" and "between" in before)
+        )
 
     def _thing_part(self, at: int) -> Found:
         """`newspaper step`, `dismissed branch`."""
         for mention in self.mentions[at] if at < len(self.mentions) else ():
-            if mention.candidates and self._word(mention.end) in _PART[:3] + _PART[4:]:
+            if not mention.candidates:
+                continue
+            if self._word(mention.end) in _PART[:3] + _PART[4:]:
                 yield mention.end + 1, self._fitting(None, [mention])
+            elif self._behind_order(at) and not mention.pronoun:
+                fitting = self._fitting(None, [mention])
+                yield from [(mention.end, fitting)] * bool(fitting)
         if self._word(at + 1) in _PART:
             word = self._word(at)
             yield (

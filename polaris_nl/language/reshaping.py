@@ -56,6 +56,24 @@ def merged(program: Automaton, one: str, two: str) -> Reshaped:
     return edits, f"{first.name} and {second.name} are one now", [one]
 
 
+def merged_all(program: Automaton) -> Reshaped:
+    """All checkpoints in one.
+
+    Raises:
+        EditError: there is a choice or a condition between them, or only one.
+    """
+    made = program.children(START)
+    if len(made) != 1 or not program.children(made[0]):
+        raise EditError("There are no steps in a row to make one of; name two.")
+    first, edits, changed = made[0], list[Edit](), program
+    while following := changed.children(first):
+        if len(following) > 1:
+            raise EditError("There is a choice between the steps, so they can't be one; name two.")
+        edits += merged(changed, first, following[0])[0]
+        changed = apply_all(program, edits)
+    return edits, "all of it is one step now", [first]
+
+
 def split(program: Automaton, this: str, names: Names) -> Reshaped:
     """A checkpoint's first goal in a checkpoint of its own, before the others.
 
