@@ -150,7 +150,7 @@ class Changes:
                 named[other] = self._about(slots[slot], (), program, dialogue)
         latest = latest_step(program, dialogue)
         if intent in ("limit", "spare"):
-            return self._limited(match, latest, program, dialogue)
+            return self._limited(match, named.get("k", latest), program, dialogue)
         if intent == "remove-latest":
             return removed_latest(program, int(str(slots["q"])), latest)
         if intent in ("at-start", "before-that"):
@@ -228,6 +228,7 @@ class Changes:
         if not when or latest == START:
             raise Misfit("")
         several = tuple(c for c in reversed(dialogue.touched) if c in program.checkpoints)
+        several = (latest,) if "x" in match.slots else several
         whole = Reference(0, len(match.tokens), several or (latest,))
         this = meant(whole, match.tokens, program, dialogue.scope)
         if match.intent == "spare":

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 from polaris_nl.automaton.automaton import START, Automaton
 from polaris_nl.automaton.edits import Edit, SetGoals
@@ -14,7 +14,7 @@ from polaris_nl.language.goal_relations import flat
 from polaris_nl.language.protocol import Language
 from polaris_nl.language.scope import Unclear
 from polaris_nl.language.tokens import PhraseSet
-from polaris_nl.model.formula import Goal, bind
+from polaris_nl.model.formula import Goal, Imply, Quantified, bind
 
 
 def put_instead(
@@ -56,12 +56,30 @@ def put_instead(
     if len(steps) != 1 or steps[0].when or steps[0].forbidden or not steps[0].goals:
         return None
     wanted = steps[0].goals
+    if len(wanted) == 1 and isinstance(wanted[0], Quantified):
+        return _all_of_them(language, wanted[0], old, program)
     new = dict.fromkeys(a for g in flat(wanted) for a in g.args if a not in old)
     for checkpoint in (*reversed(touched), *reversed(list(program.checkpoints))):
         for before, after in ((b, a) for b in sorted(old) for a in new if checkpoint != START):
             edits = _exchanged_only(language, wanted, checkpoint, (before, after), program)
             if edits:
                 return edits, f"{goals_in_words(wanted, language.wording)} instead"
+    return None
+
+
+def _all_of_them(
+    language: Language, wanted: Quantified, old: Collection[str], program: Automaton
+) -> tuple[list[Edit], str] | None:
+    """All of a kind in the place of one of it: "all the laundry on the desk, not just the towel"."""
+    body = wanted.body
+    if not isinstance(body, Imply) or len(wanted.variables) != 1:
+        return None
+    of = {bind(body.conclusion, {wanted.variables[0].name: thing}) for thing in old}
+    for checkpoint in program.checkpoints.values():
+        if of.intersection(checkpoint.goals):
+            goals = tuple(dict.fromkeys(wanted if g in of else g for g in checkpoint.goals))
+            edits: list[Edit] = [SetGoals(checkpoint.id, goals)]
+            return edits, f"{goals_in_words([wanted], language.wording)} instead"
     return None
 
 

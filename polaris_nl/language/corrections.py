@@ -277,6 +277,8 @@ class Corrections:
         if not _LIMITING.intersection(words(utterance)):
             return None
         said = [w for w in core.tokens if w not in _SURELY]
+        if said[-1:] in (["mind"], ["though"]) and "never" not in said:
+            said = said[:-1]
         steps = self._changes.steps(said, dialogue)
         if not steps or not (steps[0].when and steps[0].goals):
             return None

@@ -54,8 +54,9 @@ _ASKING = frozenset(("where", "what", "which", "who", "how", "why", "undo"))
 _LEADING = frozenset(("if", "when", "once", "unless", "could", "can", "would", "please"))
 """Words that may stand before what is asked for, and belong to it."""
 
-_OPENING = frozenset(("because", "since", "as", "cause", "that", "and", "so"))
+_OPENING = frozenset(("because", "since", "as", "cause", "and", "so"))
 """Words that what is told may begin with."""
+_REASON = ("because", "cause")
 _NAMING = frozenset(("the", "her", "his", "their", "your", "mine", "who", "which"))
 _DUTY = frozenset((
     "should", "must", "shall", "let", "please", "you", "needn't", "want", "wants", "rather", "like", "prefer",
@@ -106,14 +107,16 @@ def without_told(
     """What is asked for between commas, and what is only told there; None where nothing is told.
 
     `scrap the reminder, the staff do that themselves`: what is told has a subject and its verb, asks for
-    nothing, and forbids nothing. Only what is typed has commas.
+    nothing, and forbids nothing. Only what is typed has commas; "because" does for one.
 
     Args:
         tokens: the utterance.
         clauses: those that start at each position.
     """
-    ends = [at for at, token in enumerate(tokens) if token in (BREAK, COMMA)]
-    spans = list(zip([0, *(at + 1 for at in ends)], [*ends, len(tokens)], strict=True))
+    marks = (BREAK, COMMA)
+    ends = [at for at, token in enumerate(tokens) if token in marks or (at and token in _REASON)]
+    starts = [0, *(at + (tokens[at] in marks) for at in ends)]
+    spans = list(zip(starts, [*ends, len(tokens)], strict=True))
     spans = [(start, end) for start, end in spans if start < end]
     told = [
         span for span in spans if _only_tells(tokens[span[0] : span[1]], clauses[span[0] : span[1]])

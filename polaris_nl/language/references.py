@@ -286,6 +286,8 @@ class _Search:
         yield from self._verbal(at, INFLECTED)
         for start in self._one_of(at, _DOER[:-1]):
             yield from self._verbal(start, ("base",))
+            if self._word(start) in ("have", "has"):
+                yield from self._verbal(start + 1, ("participle",))
         noun = _NOUNS.get(self._word(at), "")
         if noun:
             asked = frozenset(self.said.get(noun, ()))

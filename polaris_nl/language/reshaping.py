@@ -161,8 +161,13 @@ def moved_before(program: Automaton, this: str, other: str) -> Reshaped:
     incoming = without.incoming(other)
     if incoming is None:
         raise EditError(f"Nothing leads to {before}; name another step.")
-    onward = without.fresh_transition_id()
-    edits: list[Edit] = [*alone, InsertCheckpoint(program.checkpoints[this], incoming.id, onward)]
+    checkpoint = program.checkpoints[this]
+    edits: list[Edit] = [*alone]
+    if incoming.source == START and incoming.when:
+        # What comes first of all doesn't wait for what the next step waits for.
+        edits += put_after(without, checkpoint, START)
+    else:
+        edits.append(InsertCheckpoint(checkpoint, incoming.id, without.fresh_transition_id()))
     return edits, f"{name} comes before {before} now", [this]
 
 
