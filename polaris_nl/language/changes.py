@@ -190,6 +190,8 @@ class Changes:
             goals, _ = self.goals(match.tokens, slots.get("g"), dialogue)
             words = goals_in_words(goals, self._language.wording)
             if intent == "together":
+                if self._tells(match.tokens, match.slots["g"]):
+                    raise Misfit("")  # "... the boy is playing with it": it is what is told.
                 this = self._about(slots["y"], goals, program, dialogue)
                 name = program.checkpoints[this].name
             if intent != "replace":
@@ -207,6 +209,12 @@ class Changes:
         one, two = pair(intent, named, latest, program)
         one, two = (two, one) if program.parent(one) == two else (one, two)
         return self._put(match, one, program, dialogue, two)
+
+    def _tells(self, tokens: Sequence[str], span: object) -> bool:
+        """Whether something is only told in a span of tokens."""
+        assert isinstance(span, tuple)
+        cuts = self._language.cuts(tokens[span[0] : span[1]])
+        return bool(cuts) and any(item.role in ("fact", "topic") for item in cuts[0].items)
 
     def _about(
         self, thing: object, alike: Sequence[Goal], program: Automaton, dialogue: Dialogue

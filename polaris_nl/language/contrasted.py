@@ -11,8 +11,9 @@ from polaris_nl.language.dialogue import Dialogue
 from polaris_nl.language.exchange import exchanged
 from polaris_nl.language.generate import goals_in_words
 from polaris_nl.language.goal_relations import flat
+from polaris_nl.language.mention import Mention
 from polaris_nl.language.protocol import Language
-from polaris_nl.language.scope import Unclear
+from polaris_nl.language.scope import Misfit, Unclear
 from polaris_nl.language.tokens import PhraseSet
 from polaris_nl.model.formula import Goal, Imply, Quantified, bind
 
@@ -46,7 +47,11 @@ def put_instead(
     mentions = language.mentions(words)
     # "... not in the sink" says the preposition again.
     named = [m for there in mentions[start : start + 2] for m in there]
-    old = {c.entity for m in named if m.end == len(words) for c in m.candidates}
+    whole = [m for m in named if m.end == len(words)]
+    old = {c.entity for m in whole for c in m.candidates}
+    for mention in whole:
+        if mention.pronoun and not mention.candidates:
+            old.update(_spoken_of(language, mention, dialogue))
     if not old:
         return None
     try:
@@ -65,6 +70,14 @@ def put_instead(
             if edits:
                 return edits, f"{goals_in_words(wanted, language.wording)} instead"
     return None
+
+
+def _spoken_of(language: Language, pronoun: Mention, dialogue: Dialogue) -> Sequence[str]:
+    """Whom "me" means."""
+    try:
+        return language.resolver.meant(pronoun, ("person",), dialogue.scope).entities
+    except (Misfit, Unclear):
+        return ()
 
 
 def _all_of_them(

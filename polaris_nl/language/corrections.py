@@ -54,6 +54,11 @@ _MORE = ("also", "too", "as well", "again")
 NOTHING_OF_THAT = "That isn't asked for, so there is nothing to leave out."
 _OR = (("or", "else"), ("or",), ("alternatively",), ("or", "alternatively"))
 """Words that lead to another way on."""
+_ANYWAY = (
+    ("wherever",), ("whatever",), ("regardless",), ("whether",), ("in", "any", "case"), ("either", "way"),
+    ("no", "matter"), ("anyway",),
+)  # fmt: skip
+"""Words by which what is there waits for nothing any more."""
 _PLEASE, _INSTEAD = "please", "instead"
 _SURELY = ("actually", "really", "also", "still", "indeed", "definitely", "certainly")
 """Words that stress a condition."""
@@ -138,8 +143,10 @@ class Corrections:
             taken = self._taken_back(utterance, core, program, dialogue)
             if taken is not None or not core.strength or core.needless:
                 return taken
-        limited = self._limited(utterance, core, program, dialogue) or self._done_then(
-            utterance, core, program, dialogue
+        limited = (
+            self._limited(utterance, core, program, dialogue)
+            or self._anyway(utterance, core, program, dialogue)
+            or self._done_then(utterance, core, program, dialogue)
         )
         if limited is not None or not core.strength:
             return limited
@@ -295,6 +302,28 @@ class Corrections:
                 say = steps_in_words(steps, self._language.wording)
                 edits, touched = [limit, *builder.edits], [arrow.target, *builder.touched]
                 return self._applied(utterance, edits, say, program, dialogue, touched)
+        return None
+
+    def _anyway(
+        self, utterance: str, core: Core, program: Automaton, dialogue: Dialogue
+    ) -> MeantThen | None:
+        """`give it to her wherever she is`, where that waits for something: now it doesn't."""
+        found = (
+            at
+            for at in range(2, len(core.tokens))
+            for phrase in _ANYWAY
+            if core.tokens[at : at + len(phrase)] == phrase
+        )
+        at = next(found, None)
+        steps = self._changes.steps(core.tokens[:at], dialogue) if at is not None else []
+        if len(steps) != 1 or steps[0].when or not steps[0].goals:
+            return None
+        for arrow in reversed(list(program.transitions.values())):
+            there = set(program.checkpoints[arrow.target].goals)
+            if arrow.when and there == set(steps[0].goals):
+                say = f"{goals_in_words(steps[0].goals, self._language.wording)} in any case"
+                edits = [SetConditional(arrow.id, ())]
+                return self._applied(utterance, edits, say, program, dialogue, [arrow.target])
         return None
 
     def _done_then(

@@ -54,7 +54,9 @@ _ASKING = frozenset(("where", "what", "which", "who", "how", "why", "undo"))
 _LEADING = frozenset(("if", "when", "once", "unless", "could", "can", "would", "please"))
 """Words that may stand before what is asked for, and belong to it."""
 
-_OPENING = frozenset(("because", "since", "as", "cause", "and", "so"))
+_OPENING = frozenset(
+    ("because", "since", "as", "cause", "and", "so", "sorry", "oh", "well", "okay", "right")
+)
 """Words that what is told may begin with."""
 _REASON = ("because", "cause")
 _NAMING = frozenset(("the", "her", "his", "their", "your", "mine", "who", "which"))
@@ -135,7 +137,9 @@ def _only_tells(words: Sequence[str], clauses: Sequence[Sequence[Clause]]) -> bo
     """Whether a part between commas only tells something."""
     if words[0] in _OPENING:
         words, clauses = words[1:], clauses[1:]
-    if len(words) < LEAST or not (words[0] in SUBJECTS or words[0] in _NAMING):
+    if len(words) < LEAST:
+        return False
+    if not (words[0] in SUBJECTS or words[0] in _NAMING or words[1] in BE_OR_DO):
         return False
     if not BE_OR_DO.union(_TOLD).intersection(words[1:]) and not _verbal(words[1]):
         return False

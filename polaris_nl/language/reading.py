@@ -101,6 +101,9 @@ class _Reader:
         item = self.items[self.at]
         self.at += 1
         if item.mark in ("if", "until", "unless"):
+            said = [i.mark for i in self.items[: self.at - 1] if i.mark != "comma"]
+            if item.mark == "if" and said[-1:] == ["else"]:
+                self.done.otherwise = False  # "Otherwise, so if it isn't clean, ..." says when.
             self._how_said = item.text
             before = self.items[self.at - 2 : self.at - 1]
             self._joined = "and" in (item.text.split()[0], *(i.mark for i in before))

@@ -65,16 +65,18 @@ class Salvage:
             return None
         return replace(meant, aside=(" ".join(tokens[:start]), *meant.aside)), after
 
+    def without_told(self, tokens: Sequence[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
+        """Tokens without what is only told between commas, and that."""
+        clauses = self._segmenter.clauses_in(tokens, self._language.mentions(tokens))
+        return without_told(tokens, clauses) or (tuple(tokens), ())
+
     def between_commas(
         self, utterance: str, tokens: Sequence[str], program: Automaton, dialogue: Dialogue
     ) -> Meant | None:
         """What is asked for without what is only told before or behind a comma; None where nothing is."""
-        found = without_told(
-            tokens, self._segmenter.clauses_in(tokens, self._language.mentions(tokens))
-        )
-        if found is None:
+        kept, aside = self.without_told(tokens)
+        if not aside:
             return None
-        kept, aside = found
         meant, after = self._reads(utterance, kept, program, dialogue)
         if meant.outcome == "refused" or meant.command in SAID_ALONE:
             return None

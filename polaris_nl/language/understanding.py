@@ -225,11 +225,13 @@ class Understanding:
     ) -> tuple[Interpretation, Dialogue]:
         """What is meant by all of the tokens, or else by those before what is only told."""
         kept = self._segmenter.before_remark(tokens, self.mentions(tokens))
+        strength = self._corrections.core(tokens).strength
+        for rest in (kept, self._salvage.without_told(tokens)[0]):
+            if len(rest) < len(tokens) and self._corrections.core(rest).strength > strength:
+                # "To Mr Brown instead, she has eaten" is nothing on top.
+                return self._whole(utterance, rest, program, dialogue)
         if len(kept) == len(tokens):
             return self._whole(utterance, tokens, program, dialogue)
-        if self._corrections.core(kept).strength > self._corrections.core(tokens).strength:
-            # "To Mr Brown instead, she has eaten" is nothing on top.
-            return self._whole(utterance, kept, program, dialogue)
         meant, after = self._whole(utterance, tokens, program, dialogue)
         if meant.outcome == "refused":
             again, then = self._whole(utterance, kept, program, dialogue)
