@@ -12,8 +12,6 @@ from polaris_nl.automaton.edits import (
     RenameCheckpoint,
     SetConditional,
     SetGoals,
-    apply,
-    apply_all,
 )
 from polaris_nl.language.another_condition import another_condition
 from polaris_nl.language.changes import (
@@ -28,12 +26,11 @@ from polaris_nl.language.clauses import pronoun_types
 from polaris_nl.language.conditions import condition_in
 from polaris_nl.language.contrasted import put_instead
 from polaris_nl.language.cores import AROUND, DO_NOT, NEEDLESS, Core, Cores, trimmed
-from polaris_nl.language.dialogue import Dialogue, Latest
+from polaris_nl.language.dialogue import Dialogue
 from polaris_nl.language.elsewhere import exchanged_places
 from polaris_nl.language.exchange import exchanged, used_in, without
 from polaris_nl.language.generate import goals_in_words, steps_in_words
 from polaris_nl.language.goal_relations import flat
-from polaris_nl.language.interpretation import Interpretation
 from polaris_nl.language.mention import Mention
 from polaris_nl.language.patterns import Match, Patterns
 from polaris_nl.language.protocol import Language
@@ -42,8 +39,8 @@ from polaris_nl.language.rereading import Rereading
 from polaris_nl.language.reshaping import removed
 from polaris_nl.language.retractions import negated, place_of
 from polaris_nl.language.scope import Misfit, Unclear
-from polaris_nl.language.structure import Builder, Step
-from polaris_nl.language.tokens import PhraseSet, words
+from polaris_nl.language.tokens import words
+from polaris_nl.language.waiting import Waiting, applied
 from polaris_nl.model.errors import EditError
 from polaris_nl.model.formula import Literal
 from polaris_nl.model.text import listed, sentence
@@ -52,18 +49,7 @@ WHAT_INSTEAD = "I don't see what should be changed; say what you meant, or undo.
 _MORE = ("also", "too", "as well", "again")
 """Words of a sentence that adds to what was said, however it starts."""
 NOTHING_OF_THAT = "That isn't asked for, so there is nothing to leave out."
-_OR = (("or", "else"), ("or",), ("alternatively",), ("or", "alternatively"))
-"""Words that lead to another way on."""
-_ANYWAY = (
-    ("wherever",), ("whatever",), ("regardless",), ("whether",), ("in", "any", "case"), ("either", "way"),
-    ("no", "matter"), ("anyway",),
-)  # fmt: skip
-"""Words by which what is there waits for nothing any more."""
 _PLEASE, _INSTEAD = "please", "instead"
-_SURELY = ("actually", "really", "also", "still", "indeed", "definitely", "certainly")
-"""Words that stress a condition."""
-_LIMITING = frozenset(("only", "wait"))
-"""Words by which what is there waits for something."""
 _ON = ("and", "but", "then", "please")
 """Words between what isn't wanted and what is."""
 
@@ -82,6 +68,7 @@ class Corrections:
         self._patterns = Patterns(rest, references, common.numbers)
         self._choosing = Choosing(language)
         self._again = Rereading(language, references)
+        self._conditions = Waiting(language, changes)
 
     def corrected(
         self, utterance: str, core: Core, program: Automaton, dialogue: Dialogue
@@ -111,13 +98,13 @@ class Corrections:
         words = core.words
         if core.strength and (again := self._again.edited(utterance, words, program, dialogue)):
             return again
-        other = self._other_way(utterance, words, touched, program, dialogue)
+        other = self._conditions.other_way(utterance, words, touched, program, dialogue)
         if other is not None:
             return other
         mentions = self._language.mentions(words)
         instead = put_instead(self._language, self._changes, words, touched, program, dialogue)
         if instead is not None:
-            return self._applied(utterance, *instead, program, dialogue, touched)
+            return applied(self._language, utterance, *instead, program, dialogue, touched)
         question: Unclear | None = None
         for match in self._patterns.matches(words, mentions, program, touched):
             if match.intent.startswith("correct-") and not core.strength and "y" not in match.slots:
@@ -136,7 +123,7 @@ class Corrections:
                 question = question or unclear
                 continue
             if found is not None:
-                return self._applied(utterance, *found, program, dialogue, touched)
+                return applied(self._language, utterance, *found, program, dialogue, touched)
         if question is not None:
             raise question
         if core.tokens[:2] == DO_NOT:
@@ -144,9 +131,9 @@ class Corrections:
             if taken is not None or not core.strength or core.needless:
                 return taken
         limited = (
-            self._limited(utterance, core, program, dialogue)
-            or self._anyway(utterance, core, program, dialogue)
-            or self._done_then(utterance, core, program, dialogue)
+            self._conditions.limited(utterance, core, program, dialogue)
+            or self._conditions.anyway(utterance, core, program, dialogue)
+            or self._conditions.done_then(utterance, core, program, dialogue)
         )
         if limited is not None or not core.strength:
             return limited
@@ -155,7 +142,7 @@ class Corrections:
             return edited
         condition = another_condition(self._language, core.words, touched, program, dialogue)
         if condition is not None:
-            return self._applied(utterance, *condition, program, dialogue, touched)
+            return applied(self._language, utterance, *condition, program, dialogue, touched)
         return self._sentence(utterance, core, touched, program, dialogue)
 
     def _matched(
@@ -277,76 +264,6 @@ class Corrections:
 
     # Sentences
 
-    def _limited(
-        self, utterance: str, core: Core, program: Automaton, dialogue: Dialogue
-    ) -> MeantThen | None:
-        """`only go home if she dismisses it`, where going home was asked for already: now it waits for that."""
-        if not _LIMITING.intersection(words(utterance)):
-            return None
-        said = [w for w in core.tokens if w not in _SURELY]
-        if said[-1:] in (["mind"], ["though"]) and "never" not in said:
-            said = said[:-1]
-        steps = self._changes.steps(said, dialogue)
-        if not steps or not (steps[0].when and steps[0].goals):
-            return None
-        first, *rest = steps
-        if any(step.role != "else" for step in rest):
-            return None
-        for arrow in reversed(list(program.transitions.values())):
-            there = set(program.checkpoints[arrow.target].goals)
-            if there == set(first.goals) and arrow.conditional < set(first.when):
-                limit: Edit = SetConditional(arrow.id, first.when)
-                builder = self._builder(apply(program, limit), arrow.target, arrow.source)
-                for step in rest:
-                    builder.add(step)
-                say = steps_in_words(steps, self._language.wording)
-                edits, touched = [limit, *builder.edits], [arrow.target, *builder.touched]
-                return self._applied(utterance, edits, say, program, dialogue, touched)
-        return None
-
-    def _anyway(
-        self, utterance: str, core: Core, program: Automaton, dialogue: Dialogue
-    ) -> MeantThen | None:
-        """`give it to her wherever she is`, where that waits for something: now it doesn't."""
-        found = (
-            at
-            for at in range(2, len(core.tokens))
-            for phrase in _ANYWAY
-            if core.tokens[at : at + len(phrase)] == phrase
-        )
-        at = next(found, None)
-        steps = self._changes.steps(core.tokens[:at], dialogue) if at is not None else []
-        if len(steps) != 1 or steps[0].when or not steps[0].goals:
-            return None
-        for arrow in reversed(list(program.transitions.values())):
-            there = set(program.checkpoints[arrow.target].goals)
-            if arrow.when and there == set(steps[0].goals):
-                say = f"{goals_in_words(steps[0].goals, self._language.wording)} in any case"
-                edits = [SetConditional(arrow.id, ())]
-                return self._applied(utterance, edits, say, program, dialogue, [arrow.target])
-        return None
-
-    def _done_then(
-        self, utterance: str, core: Core, program: Automaton, dialogue: Dialogue
-    ) -> MeantThen | None:
-        """`if she dismisses it don't go home, go to the hall`, where going home was asked for then."""
-        if "not" not in core.tokens or core.tokens[:2] == DO_NOT:
-            return None
-        steps = self._changes.steps(core.tokens, dialogue)
-        if len(steps) != 2 or not (steps[0].when and steps[1].goals):
-            return None
-        denied = [g for g in steps[0].goals if isinstance(g, Literal) and not g.positive]
-        wrong = {g.negation for g in denied}
-        for arrow in program.transitions.values():
-            there = program.checkpoints[arrow.target].goals
-            if arrow.conditional == set(steps[0].when) and wrong & set(there):
-                goals = (*(g for g in there if g not in wrong), *steps[1].goals)
-                names = self._language.names.renamed(program, arrow.target, goals, arrow.when)
-                say = f"{goals_in_words(steps[1].goals, self._language.wording)} instead"
-                edits: list[Edit] = [SetGoals(arrow.target, goals), *names]
-                return self._applied(utterance, edits, say, program, dialogue, [arrow.target])
-        return None
-
     def _taken_back(
         self, utterance: str, core: Core, program: Automaton, dialogue: Dialogue
     ) -> MeantThen | None:
@@ -367,7 +284,7 @@ class Corrections:
             if left is None:
                 return None
             if not rest:
-                return self._applied(utterance, *left, program, dialogue, there)
+                return applied(self._language, utterance, *left, program, dialogue, there)
             rest = rest[1:] if rest[0] in _ON else rest
             if not self._language.asks_for(rest):
                 return None  # "Don't go home before you have filled the tray."
@@ -408,7 +325,7 @@ class Corrections:
         if core.tokens[:2] == DO_NOT:
             left = negated(step.goals, touched, program)
             if left is not None:
-                return self._applied(utterance, *left, program, dialogue, touched)
+                return applied(self._language, utterance, *left, program, dialogue, touched)
         if len(steps) > 1 or step.role == "else":
             return self._again.said(utterance, core.tokens, program, dialogue)
         target = target or touched[-1]
@@ -427,7 +344,7 @@ class Corrections:
             beside = _INSTEAD in words(utterance) and not incoming.when
             if not beside:
                 return None
-            return self._beside(utterance, step, incoming.source, program, dialogue)
+            return self._conditions.beside(utterance, step, incoming.source, program, dialogue)
         when = step.when or incoming.when
         edits: list[Edit] = []
         if there != set(step.goals):
@@ -442,76 +359,4 @@ class Corrections:
         )
         if not any(not isinstance(e, RenameCheckpoint) for e in edits):
             edits, say = [], NOTHING_CHANGES
-        return self._applied(utterance, edits, say, program, dialogue, touched)
-
-    def _other_way(
-        self,
-        utterance: str,
-        words: Sequence[str],
-        touched: Sequence[str],
-        program: Automaton,
-        dialogue: Dialogue,
-    ) -> MeantThen | None:
-        """`or if she's in, ...`, `if she's in, go to the hall instead of home`: beside what is done else."""
-        start = next((len(w) for w in _OR if tuple(words[: len(w)]) == w), 0)
-        contrast = PhraseSet(self._language.grammar.common.contrast)
-        end = next((i for i in range(1, len(words)) if contrast.length_at(words, i)), len(words))
-        if not touched or not (start or end < len(words)):
-            return None
-        steps = self._changes.steps(words[start:end], dialogue)
-        if len(steps) != 1 or not (steps[0].when and steps[0].goals):
-            return None
-        wanted = set(steps[0].when)
-        if any(arrow.conditional == wanted for arrow in program.transitions.values()):
-            return None
-        named = {
-            c.entity for m in self._language.mentions(words[end:]) for x in m for c in x.candidates
-        }
-        made = (*reversed(touched), *reversed([c for c in program.checkpoints if c != START]))
-        place = next(
-            (c for c in made if end == len(words) or named & set(used_in(program, [c]))), None
-        )
-        incoming = program.incoming(place) if place is not None else None
-        if incoming is None or (incoming.when and not start):
-            return None
-        return self._beside(utterance, steps[0], incoming.source, program, dialogue)
-
-    def _beside(
-        self, utterance: str, step: Step, source: str, program: Automaton, dialogue: Dialogue
-    ) -> MeantThen:
-        """Another way on from a checkpoint: "if it's open, take it to the sink instead"."""
-        builder = self._builder(program, source)
-        builder.add(step)
-        say = steps_in_words([step], self._language.wording)
-        meant, after = self._applied(
-            utterance, builder.edits, say, program, dialogue, builder.touched
-        )
-        return meant, replace(after, here=builder.here, anchor=builder.anchor)
-
-    def _builder(self, program: Automaton, here: str, anchor: str | None = None) -> Builder:
-        return Builder(self._language.world, self._language.names, program, here, anchor)
-
-    def _applied(
-        self,
-        utterance: str,
-        edits: Sequence[Edit],
-        say: str,
-        program: Automaton,
-        dialogue: Dialogue,
-        touched: Sequence[str],
-    ) -> MeantThen:
-        if not edits:
-            return Interpretation(utterance, "answer", say), dialogue
-        changed = apply_all(program, edits)
-        if changed == program:
-            return Interpretation(utterance, "answer", NOTHING_CHANGES), dialogue
-        corrected = {e.checkpoint for e in edits if isinstance(e, SetGoals)}
-        known = [a for c in corrected for a in used_in(changed, [c])]
-        entities = self._language.world.entities
-        scope = dialogue.scope
-        for name in (k for k in reversed(known) if k in entities and k not in scope.referents[-1:]):
-            scope = scope.after((name,)) if name not in used_in(program, corrected) else scope
-        kept = tuple(c for c in touched if c in changed.checkpoints) or tuple(corrected)
-        latest = Latest((), program, changed, replace(dialogue, latest=None), "correct")
-        after = replace(dialogue, scope=scope, touched=kept, latest=latest)
-        return Interpretation(utterance, "applied", sentence(say), tuple(edits)), after
+        return applied(self._language, utterance, edits, say, program, dialogue, touched)

@@ -344,11 +344,14 @@ class _Search:
         )
         if not asked:
             return
+        named = forms != ("base",)
         if alone:
             yield at + 1, self._fitting(asked, [])
+        if named and self._word(at + 1) in _PART:
+            yield at + 2, self._fitting(asked, [])
         for end, ids in self._with_things(asked, at + 1):
             yield end, ids
-            if self._word(end) in _PART and forms != ("base",):
+            if named and self._word(end) in _PART:
                 yield end + 1, ids
 
     def _behind_order(self, at: int) -> bool:

@@ -30,7 +30,7 @@ def merged(program: Automaton, one: str, two: str) -> Reshaped:
     """The goals of two checkpoints, one after the other, in one.
 
     Raises:
-        EditError: they don't follow each other, or something is waited for between them.
+        EditError: they don't follow each other, something is waited for between them, or they undo each other.
     """
     if any(t.source == two and t.target == one for t in program.transitions.values()):
         one, two = two, one
@@ -48,6 +48,10 @@ def merged(program: Automaton, one: str, two: str) -> Reshaped:
     if len(program.outgoing(one)) > 1:
         raise EditError(
             f"{first.name} has several ways on, so {second.name} can't be part of it; remove the others first."
+        )
+    if any(goal.negation in first.goals for goal in second.goals if isinstance(goal, Literal)):
+        raise EditError(
+            f"{first.name} and {second.name} undo each other, so they can't be one; name two others."
         )
     edits: list[Edit] = [
         RemoveCheckpoint(two),

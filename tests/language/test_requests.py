@@ -45,6 +45,8 @@ FLOORS: Mapping[str, tuple[float, float]] = {
     "waiters": (0.72, 0.02),
     "planners": (0.74, 0.04),
     "grandparents": (0.79, 0.005),
+    "editors": (0.53, 0.014),
+    "talkers": (0.75, 0.0),
 }
 """For each file, the share that must be understood rightly, and that may be understood wrongly."""
 
@@ -68,6 +70,6 @@ def test_requests_are_understood(name: str) -> None:
         context = Context(understanding(group["world"]), tuple(group.get("after", ())))
         found.update(outcome(context, said, expected) for said, expected in group["say"].items())
     total, (right, wrong) = found.total(), FLOORS[name]
-    assert total > 150
+    assert total >= 150
     assert found["right"] >= right * total, found
     assert found["wrong"] <= wrong * total, found
