@@ -47,7 +47,7 @@ from polaris_nl.language.reshaping import (
 from polaris_nl.language.scope import Misfit, Unclear
 from polaris_nl.language.segment import Item
 from polaris_nl.language.structure import Step
-from polaris_nl.language.tokens import BREAK, COMMA
+from polaris_nl.language.tokens import BREAK, COMMA, phrase
 from polaris_nl.model.errors import EditError
 from polaris_nl.model.formula import Goal, Literal
 from polaris_nl.model.text import listed, sentence
@@ -292,7 +292,7 @@ class Changes:
         intent, goals = match.intent, steps[0].goals
         if intent not in _PLACING or asked_anew(match.tokens):
             return None
-        if len(steps) > 1 or steps[0].when or not goals:
+        if len(steps) > 1 or steps[0].when or not goals or self._by_name(match, program):
             return None
         first = next(iter(program.children(START)), START)
         if intent == "at-start" or goals == program.checkpoints[this].goals:
@@ -303,6 +303,14 @@ class Changes:
         if order is None:
             return None
         return moved(program, order[0], this, behind=intent == "after")
+
+    def _by_name(self, match: Match, program: Automaton) -> bool:
+        """Whether a step is spoken of by its name: then something is to come after it, new or not."""
+        found = match.references.get("k")
+        if found is None:
+            return False
+        said = " ".join(match.tokens[found.start : found.end])
+        return any(said == " ".join(phrase(c.name)) for c in program.checkpoints.values())
 
     def _new(
         self, goals: tuple[Goal, ...], when: tuple[Literal, ...], program: Automaton

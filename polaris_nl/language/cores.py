@@ -101,7 +101,7 @@ class Cores:
                 changed = changed or kept != found
                 found = kept
         behind = len(tokens) - len(found) - 1
-        if found[0] == "not" and behind >= 0 and tuple(tokens[behind : behind + 2]) == DO_NOT:
+        if found[:1] == ["not"] and behind >= 0 and tuple(tokens[behind : behind + 2]) == DO_NOT:
             found = ["do", *found]  # Of "please do", which is a filler.
         return Core(tuple(found), strength, needless)
 

@@ -14,6 +14,7 @@ from polaris_nl.language.exchange import used_in
 from polaris_nl.language.generate import goals_in_words, steps_in_words
 from polaris_nl.language.interpretation import Interpretation
 from polaris_nl.language.protocol import Language
+from polaris_nl.language.scope import Unclear
 from polaris_nl.language.structure import Builder, Step
 from polaris_nl.language.tokens import PhraseSet, words
 from polaris_nl.model.formula import Literal
@@ -22,8 +23,8 @@ from polaris_nl.model.text import sentence
 _OR = (("or", "else"), ("or",), ("alternatively",), ("or", "alternatively"))
 """Words that lead to another way on."""
 _ANYWAY = (
-    ("wherever",), ("whatever",), ("regardless",), ("whether",), ("in", "any", "case"), ("either", "way"),
-    ("no", "matter"), ("anyway",),
+    ("wherever",), ("whatever",), ("regardless",), ("whether", "or", "not"), ("in", "any", "case"),
+    ("either", "way"), ("no", "matter"), ("anyway",),
 )  # fmt: skip
 """Words by which what is there waits for nothing any more."""
 _NEXT = frozenset(("then", "afterwards", "next", "after", "later"))
@@ -80,7 +81,10 @@ class Waiting:
             if core.tokens[at : at + len(phrase)] == phrase
         )
         at = next(found, None)
-        steps = self._changes.steps(core.tokens[:at], dialogue) if at is not None else []
+        try:
+            steps = self._changes.steps(core.tokens[:at], dialogue) if at is not None else []
+        except Unclear:
+            return None
         if len(steps) != 1 or steps[0].when or not steps[0].goals:
             return None
         for arrow in reversed(list(program.transitions.values())):
