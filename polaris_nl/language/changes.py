@@ -300,6 +300,9 @@ class Changes:
         if goals == program.checkpoints[this].goals:
             return [], "", []
         order = there_already(program, (goals, program.checkpoints[this].goals))
+        if order is None and intent == "before-that":
+            this = first
+            order = there_already(program, (goals, program.checkpoints[this].goals))
         if order is None:
             return None
         return moved(program, order[0], this, behind=intent == "after")

@@ -21,7 +21,7 @@ AROUND: Mapping[str, int] = {
 """The intents of words around a correction, and how strongly each says that it is one."""
 NEEDLESS = "correct-needless"
 """The intent of words in front of what needn't be done any more."""
-_BETTER = ("would", "be", "better")
+_BETTER = (("would", "be", "better"), ("is", "better"), ("'s", "better"))
 """Behind a thing, what says that it should be elsewhere: "the plate would be better on the table"."""
 _BETTER_SO = ("if", "that", "to", "when", "than", "for")
 """Words behind it that wish for something, and move nothing."""
@@ -108,11 +108,13 @@ class Cores:
 
 def _better_elsewhere(tokens: Sequence[str]) -> list[str] | None:
     """What a thing "would be better" as what it should be; None where nothing is said to be better so."""
-    for at in range(1, len(tokens) - len(_BETTER)):
-        end = at + len(_BETTER)
-        end += tokens[end] == "off"
-        if tuple(tokens[at : at + len(_BETTER)]) == _BETTER and end < len(tokens):
-            if tokens[end] in _BETTER_SO or tokens[end] in (COMMA, BREAK):
+    for at in range(1, len(tokens)):
+        for words in _BETTER:
+            end = at + len(words)
+            if tuple(tokens[at:end]) != words or end >= len(tokens):
+                continue
+            end += tokens[end] == "off"
+            if end == len(tokens) or tokens[end] in (*_BETTER_SO, COMMA, BREAK):
                 return None
             return [*tokens[:at], "should", "be", *tokens[end:]]
     return None

@@ -50,6 +50,7 @@ _MORE = ("also", "too", "as well", "again")
 """Words of a sentence that adds to what was said, however it starts."""
 NOTHING_OF_THAT = "That isn't asked for, so there is nothing to leave out."
 _PLEASE, _INSTEAD = "please", "instead"
+_LIMITS = frozenset(("while", "whilst", "unless"))
 _ON = ("and", "but", "then", "please")
 """Words between what isn't wanted and what is."""
 
@@ -268,6 +269,8 @@ class Corrections:
         self, utterance: str, core: Core, program: Automaton, dialogue: Dialogue
     ) -> MeantThen | None:
         """`don't go home, go to the kitchen`, where going home was asked for: that step is gone, or another."""
+        if _LIMITS.intersection(core.tokens):
+            return None  # "Don't go home while I'm in the kitchen" takes back no more than that.
         there = [c for c in program.checkpoints if c != START]
         size = len(core.tokens)
         # "Don't open it, close it" as a whole forbids both.

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 
 from polaris_nl.automaton.automaton import START, Automaton
 from polaris_nl.automaton.edits import Edit, SetGoals
 from polaris_nl.language.goal_relations import says_a_place, thing_placed
 from polaris_nl.language.protocol import Language
-from polaris_nl.language.requests import SUBJECTS
+from polaris_nl.language.requests import BE_OR_DO, SUBJECTS
 from polaris_nl.language.reshaping import removed
 from polaris_nl.language.segment import Cut
 from polaris_nl.language.structure import Step
+from polaris_nl.language.tokens import BREAK, COMMA, words
 from polaris_nl.model.formula import Formula, Goal, Imply, Literal, Quantified
 
 _NEXT = frozenset((
@@ -19,33 +21,41 @@ _NEXT = frozenset((
     "before", "eventually", "besides", "as", "once"
 ))  # fmt: skip
 """Words of what is to be done on top of what is there."""
+_VERBS_TOLD = BE_OR_DO - {"can", "could", "would", "do", "will", "want", "need", "get", "keep"} | {
+    "not",
+    "might",
+}
+"""Verbs by which a reason is told."""
 _LEFT = frozenset(("leave", "keep"))
 """Verbs by which something stays as it is."""
 
 
 def put_elsewhere(
-    language: Language, cut: Cut, steps: Sequence[Step], program: Automaton
+    language: Language, cut: Cut, steps: Sequence[Step], program: Automaton, utterance: str
 ) -> tuple[list[Edit], list[str]] | None:
     """The edits that put goals in the place of those that take the same things elsewhere.
 
-    Only what is said of things ("the wine goes on the table"), not what is to be done ("put the wine on
-    the table"): people dictate the second in a row, and the first says how something should be after all.
+    Only what is said of things ("the wine goes on the table"), or for a reason ("she isn't drinking, so bring
+    it to me"), not what is to be done ("put the wine on the table"): that is dictated in a row.
 
     Args:
         language: its verbs, and names for checkpoints.
         cut: the utterance, cut into clauses.
         steps: what it asks for.
         program: what is there.
+        utterance: all that was said, of which some may have been passed over.
 
     Returns:
         The edits and the checkpoints they touch; None where something is new, or said as something to be done.
     """
-    words = [w for item in cut.items for w in item.text.split()]
-    if _NEXT.intersection(words) or words[:1] == ["and"]:
+    said = [w for item in cut.items for w in item.text.split()]
+    if _NEXT.intersection(said) or said[:1] == ["and"]:
         return None
-    if _LEFT.intersection(words) and len(steps) == 1 and not steps[0].when:
+    if _LEFT.intersection(said) and len(steps) == 1 and not steps[0].when:
         return _left_so(steps[0].goals, program)
-    if not _says_how_it_should_be(cut, language):
+    told = any(i.role == "fact" or (i.role == "topic" and i.mention is None) for i in cut.items)
+    reasoned = told or _tells_more(utterance, said)
+    if not reasoned and not _says_how_it_should_be(cut, language):
         return None
     if any(s.when or s.forbidden or s.role != "then" or not s.goals for s in steps):
         return None
@@ -87,6 +97,12 @@ def _left_so(goals: Sequence[Goal], program: Automaton) -> tuple[list[Edit], lis
                 return [SetGoals(checkpoint.id, kept)], [checkpoint.id]
             return removed(program, checkpoint.id), []
     return None
+
+
+def _tells_more(utterance: str, said: Sequence[str]) -> bool:
+    """Whether something was told around what was asked for: "she isn't drinking, so ..."."""
+    passed = Counter(w for w in words(utterance) if w not in (BREAK, COMMA)) - Counter(said)
+    return passed.total() > 2 and bool(_VERBS_TOLD.intersection(passed))
 
 
 def _says_how_it_should_be(cut: Cut, language: Language) -> bool:

@@ -349,6 +349,8 @@ class _Search:
             yield at + 1, self._fitting(asked, [])
         if named and self._word(at + 1) in _PART:
             yield at + 2, self._fitting(asked, [])
+        if named and self._word(at + 1) == "of":
+            yield from self._with_things(asked, at + 2)
         for end, ids in self._with_things(asked, at + 1):
             yield end, ids
             if named and self._word(end) in _PART:

@@ -78,3 +78,26 @@ def moved(program: Automaton, this: str, other: str, behind: bool) -> Reshaped:
     if behind and not any(t.when for t in program.outgoing(other)):
         return moved_behind(program, this, other)
     return moved_before(program, first, second)
+
+
+def in_front_of(
+    program: Automaton, wanted: Sequence[Collection[Goal]], here: str, says_before: bool
+) -> str | None:
+    """The checkpoint in front of which new steps belong that lead up to what is there; None if they don't.
+
+    After "put the cup in the cupboard, then close it", "put the plate in and then close it" is about the
+    same closing; so is "fill the cup before she gets it", wherever she gets it.
+
+    Args:
+        program: what is there.
+        wanted: goals, by step; the last are there already.
+        here: where the program has come to.
+        says_before: it was said what comes before what.
+    """
+    *new, last = wanted
+    same = [c.id for c in program.checkpoints.values() if last and set(c.goals) == set(last)]
+    there = [set(c.goals) for c in program.checkpoints.values()]
+    if not new or len(same) != 1 or any(set(goals) in there for goals in new):
+        return None
+    at_the_end = same[0] == here and not program.outgoing(here)
+    return same[0] if at_the_end or says_before else None

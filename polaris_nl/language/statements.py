@@ -13,7 +13,7 @@ from polaris_nl.language.interpretation import Interpretation, Question, Reading
 from polaris_nl.language.protocol import Language
 from polaris_nl.language.reading import steps_of
 from polaris_nl.language.refusals import Refusals
-from polaris_nl.language.reordering import says_order, there_already
+from polaris_nl.language.reordering import asked_anew, in_front_of, says_order, there_already
 from polaris_nl.language.repair import Repairs
 from polaris_nl.language.scope import Misfit, Scope, Unclear
 from polaris_nl.language.segment import Cut
@@ -22,6 +22,10 @@ from polaris_nl.language.tokens import phrase
 from polaris_nl.model.text import sentence
 
 AS_IT_IS = "It is like that already; nothing changes."
+ONLY_WHILE = (
+    "I can't keep from something only for a while; say when it should be done: "
+    '"only go home if ...".'
+)
 MOST_REPAIRED = 60
 """Words up to which self-repairs are looked for."""
 QUESTION_COST = 1.5
@@ -130,7 +134,7 @@ class Statements:
         for cut in cuts:
             builder = self._builder(program, dialogue)
             try:
-                steps, scope = self._steps(cut, builder, dialogue)
+                steps, scope = self._steps(cut, builder, dialogue, utterance)
             except Misfit as misfit:
                 yield _Tried(cut, cut.cost, f"can't be: {misfit}", None, dialogue)
                 continue
@@ -159,7 +163,9 @@ class Statements:
             meant = Interpretation(utterance, "applied", say, tuple(builder.edits), aside=aside)
             yield _Tried(cut, cut.cost, say, meant, after)
 
-    def _steps(self, cut: Cut, builder: Builder, dialogue: Dialogue) -> tuple[list[Step], Scope]:
+    def _steps(
+        self, cut: Cut, builder: Builder, dialogue: Dialogue, utterance: str
+    ) -> tuple[list[Step], Scope]:
         """The steps of a cut utterance, put into the program.
 
         Raises:
@@ -169,11 +175,17 @@ class Statements:
         branched = builder.anchor is not None
         latest = builder.program.checkpoints[builder.here].goals
         steps, scope = steps_of(cut, self._language.resolver, dialogue.scope, branched, latest)
+        if any(s.forbidden for s in steps) and "while" in utterance.lower().split():
+            raise Misfit(ONLY_WHILE)
         order = _in_order(cut, steps, builder.program)
         if order is not None:
             builder.put_in_order(order)
             return steps, scope
-        elsewhere = put_elsewhere(self._language, cut, steps, builder.program)
+        other = _leading_up_to(cut, steps, builder)
+        if other is not None:
+            builder.put_in_front(steps[:-1], other)
+            return steps, scope
+        elsewhere = put_elsewhere(self._language, cut, steps, builder.program, utterance)
         if elsewhere is not None:
             builder.change(*elsewhere)
             return steps, scope
@@ -202,7 +214,7 @@ class Statements:
     ) -> Interpretation:
         for cut in good:
             try:
-                self._steps(cut, self._builder(program, dialogue), dialogue)
+                self._steps(cut, self._builder(program, dialogue), dialogue, utterance)
             except Misfit as misfit:
                 return self._language.refused(utterance, str(misfit))
             except Unclear:
@@ -235,6 +247,22 @@ def _in_order(cut: Cut, steps: Sequence[Step], program: Automaton) -> tuple[str,
     if len(wanted) == 1:
         wanted += [program.checkpoints[c].goals for c in program.children(START)[:1]]
     return there_already(program, wanted)
+
+
+def _leading_up_to(cut: Cut, steps: Sequence[Step], builder: Builder) -> str | None:
+    """The checkpoint that new steps are to come before: the last of what is asked for, there already."""
+    words = [w for item in cut.items for w in item.text.split()]
+    if asked_anew(words) or any(s.role not in ("then", "condition") or s.sequel for s in steps):
+        return None
+    if any(step.when for step in steps[1:]):
+        return None
+    program, when = builder.program, steps[0].when
+    before = any(item.mark == "before" for item in cut.items)
+    found = in_front_of(program, [s.goals for s in steps], builder.here, before or bool(when))
+    incoming = program.incoming(found) if found is not None else None
+    if when and (incoming is None or incoming.conditional != set(when)):
+        return None
+    return found
 
 
 def _understood(cuts: Sequence[Cut]) -> list[Cut]:

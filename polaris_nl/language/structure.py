@@ -81,6 +81,16 @@ class Builder:
         else:
             self._next(step)
 
+    def put_in_front(self, steps: Sequence[Step], other: str) -> None:
+        """Puts steps in front of a checkpoint, behind what was waited for there, and goes on after that one."""
+        for step in steps:
+            incoming = self.program.incoming(other)
+            if incoming is not None:
+                checkpoint = self._checkpoint(step.goals, ())
+                onward = self.program.fresh_transition_id()
+                self._edited(InsertCheckpoint(checkpoint, incoming.id, onward), checkpoint.id)
+        self.here = other
+
     def put_in_order(self, order: Sequence[str]) -> None:
         """Puts checkpoints that are there in another order, and goes on after the last of them."""
         for edit in put_in_order(self.program, order):

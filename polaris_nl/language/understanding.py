@@ -235,7 +235,7 @@ class Understanding:
         meant, after = self._whole(utterance, tokens, program, dialogue)
         if meant.outcome == "refused":
             again, then = self._whole(utterance, kept, program, dialogue)
-            if again.outcome != "refused" and again.command not in SAID_ALONE:
+            if again.outcome != "refused" and again.command not in (*SAID_ALONE, "repeat"):
                 return again, then
         return meant, after
 
@@ -259,7 +259,7 @@ class Understanding:
         takes_back = core.strength or core.tokens[:2] == DO_NOT
         if takes_back and (changed is None or changed[0].outcome != "applied"):
             kept = self._segmenter.before_remark(core.tokens, self.mentions(core.tokens))
-            if len(kept) < len(core.tokens):
+            if len(kept) < len(core.tokens) and not _limits(core.tokens[len(kept) :]):
                 core = replace(core, tokens=kept)
                 changed = self._corrections.corrected(utterance, core, program, dialogue) or changed
         for part in dict.fromkeys((tuple(strip(tokens, ())), tuple(bare), core.tokens)):
@@ -366,5 +366,11 @@ class Understanding:
         return Interpretation(utterance, "refused", reason, refusal=Refusal(reason, tuple(unknown)))
 
 
+def _limits(tokens: Sequence[str]) -> bool:
+    """Whether words limit what is before them: "don't go home while I'm in the kitchen"."""
+    return bool(_LIMITS.intersection(tokens))
+
+
+_LIMITS = frozenset(("while", "if", "when", "unless", "until", "till", "before"))
 _KEEPING = ("help", "repeat", "read-program", "read-plan", "status", "yes")
 """Commands after which an open question can still be answered."""

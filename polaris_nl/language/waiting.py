@@ -29,6 +29,8 @@ _ANYWAY = (
 """Words by which what is there waits for nothing any more."""
 _NEXT = frozenset(("then", "afterwards", "next", "after", "later"))
 """Words that something is begun with that comes on top of what is there."""
+_OTHERWISE_THEN = frozenset(("not", "rather", "instead", "sooner"))
+"""Words by which something else is to be done where something holds."""
 _SURELY = ("actually", "really", "also", "still", "indeed", "definitely", "certainly")
 """Words that stress a condition."""
 _LIMITING = frozenset(("only", "wait"))
@@ -101,9 +103,12 @@ class Waiting:
         self, utterance: str, core: Core, program: Automaton, dialogue: Dialogue
     ) -> MeantThen | None:
         """`if she dismisses it don't go home, go to the hall`, where going home was asked for then."""
-        if "not" not in core.tokens or core.tokens[:2] == DO_NOT:
+        spoken = words(utterance)
+        if core.tokens[:2] == DO_NOT or not _OTHERWISE_THEN.intersection(spoken):
             return None
         steps = self._changes.steps(core.tokens, dialogue)
+        if len(steps) == 1 and steps[0].when and steps[0].goals and "not" not in spoken:
+            return self._then_instead(utterance, steps[0], program, dialogue)
         if len(steps) != 2 or not (steps[0].when and steps[1].goals):
             return None
         denied = [g for g in steps[0].goals if isinstance(g, Literal) and not g.positive]
@@ -115,6 +120,19 @@ class Waiting:
                 names = self._language.names.renamed(program, arrow.target, goals, arrow.when)
                 say = f"{goals_in_words(steps[1].goals, self._language.wording)} instead"
                 edits: list[Edit] = [SetGoals(arrow.target, goals), *names]
+                return applied(
+                    self._language, utterance, edits, say, program, dialogue, [arrow.target]
+                )
+        return None
+
+    def _then_instead(
+        self, utterance: str, step: Step, program: Automaton, dialogue: Dialogue
+    ) -> MeantThen | None:
+        for arrow in program.transitions.values():
+            if arrow.when and arrow.conditional == set(step.when):
+                names = self._language.names.renamed(program, arrow.target, step.goals, arrow.when)
+                say = f"{goals_in_words(step.goals, self._language.wording)} instead"
+                edits: list[Edit] = [SetGoals(arrow.target, step.goals), *names]
                 return applied(
                     self._language, utterance, edits, say, program, dialogue, [arrow.target]
                 )
