@@ -156,6 +156,9 @@ class Changes:
         if intent in ("at-start", "before-that"):
             return self._put(match, START if intent == "at-start" else latest, program, dialogue)
         this = named.get("k", latest)
+        if intent == "unconditional" and not named:
+            # "Don't wait for her", said of what waits, may be said when there is more behind it.
+            this = next((t.target for t in reversed(program.path(latest)) if t.when), latest)
         if this == START and intent in NOT_START:
             raise EditError(NOT_START[intent])
         name = program.checkpoints[this].name

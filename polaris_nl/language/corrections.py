@@ -128,7 +128,9 @@ class Corrections:
         if question is not None:
             raise question
         if core.tokens[:2] == DO_NOT:
-            taken = self._taken_back(utterance, core, program, dialogue)
+            taken = self._conditions.anyway(utterance, core, program, dialogue) or self._taken_back(
+                utterance, core, program, dialogue
+            )
             if taken is not None or not core.strength or core.needless:
                 return taken
         limited = (

@@ -53,8 +53,8 @@ def put_elsewhere(
         return None
     if _LEFT.intersection(said) and len(steps) == 1 and not steps[0].when:
         return _left_so(steps[0].goals, program)
-    told = any(i.role == "fact" or (i.role == "topic" and i.mention is None) for i in cut.items)
-    reasoned = told or _tells_more(utterance, said)
+    aside = (i.text.split() for i in cut.items if i.role in ("fact", "topic"))
+    reasoned = any(map(_VERBS_TOLD.intersection, aside)) or _tells_more(utterance, said)
     if not reasoned and not _says_how_it_should_be(cut, language):
         return None
     if any(s.when or s.forbidden or s.role != "then" or not s.goals for s in steps):

@@ -6,6 +6,7 @@ from collections.abc import Container, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from polaris_nl.automaton.automaton import START, Automaton
+from polaris_nl.language.cores import DO_NOT
 from polaris_nl.language.dialogue import Dialogue, Pending
 from polaris_nl.language.elsewhere import put_elsewhere
 from polaris_nl.language.generate import goals_in_words, steps_in_words
@@ -18,7 +19,7 @@ from polaris_nl.language.repair import Repairs
 from polaris_nl.language.scope import Misfit, Scope, Unclear
 from polaris_nl.language.segment import Cut
 from polaris_nl.language.structure import Builder, Step
-from polaris_nl.language.tokens import phrase
+from polaris_nl.language.tokens import BREAK, COMMA, phrase, words
 from polaris_nl.model.text import sentence
 
 AS_IT_IS = "It is like that already; nothing changes."
@@ -26,6 +27,8 @@ ONLY_WHILE = (
     "I can't keep from something only for a while; say when it should be done: "
     '"only go home if ...".'
 )
+_GOING_ON = frozenset(("then", "next", "afterwards", "after"))
+"""Words by which steps go on after the latest one."""
 MOST_REPAIRED = 60
 """Words up to which self-repairs are looked for."""
 QUESTION_COST = 1.5
@@ -76,6 +79,8 @@ class Statements:
         for banned, reason in self._refused_phrases:
             if _says(tokens, banned) and not (good and _only_told(good[0], banned)):
                 return self._language.refused(utterance, reason, (" ".join(banned),)), dialogue
+        if "while" in tokens and _says(tokens[: tokens.index("while")], DO_NOT):
+            return self._language.refused(utterance, ONLY_WHILE), dialogue
         mendable = len(tokens) <= MOST_REPAIRED
         mentions = self._language.mentions(tokens) if mendable else []
         best = None
@@ -175,13 +180,11 @@ class Statements:
         branched = builder.anchor is not None
         latest = builder.program.checkpoints[builder.here].goals
         steps, scope = steps_of(cut, self._language.resolver, dialogue.scope, branched, latest)
-        if any(s.forbidden for s in steps) and "while" in utterance.lower().split():
-            raise Misfit(ONLY_WHILE)
-        order = _in_order(cut, steps, builder.program)
+        order = _in_order(cut, steps, builder.program, utterance)
         if order is not None:
             builder.put_in_order(order)
             return steps, scope
-        other = _leading_up_to(cut, steps, builder)
+        other = _leading_up_to(cut, steps, builder, utterance)
         if other is not None:
             builder.put_in_front(steps[:-1], other)
             return steps, scope
@@ -237,9 +240,12 @@ class Statements:
         return meant, replace(dialogue, pending=Pending(utterance, "", kind="then"))
 
 
-def _in_order(cut: Cut, steps: Sequence[Step], program: Automaton) -> tuple[str, ...] | None:
+def _in_order(
+    cut: Cut, steps: Sequence[Step], program: Automaton, utterance: str
+) -> tuple[str, ...] | None:
     """The steps that are only put in another order, or None where something is new; one alone comes first."""
-    if not says_order([w for item in cut.items for w in item.text.split()]):
+    said = [w for item in cut.items for w in item.text.split()]
+    if not says_order(said) or asked_anew(words(utterance)):
         return None
     if any(step.role != "then" or step.when for step in steps):
         return None
@@ -249,10 +255,12 @@ def _in_order(cut: Cut, steps: Sequence[Step], program: Automaton) -> tuple[str,
     return there_already(program, wanted)
 
 
-def _leading_up_to(cut: Cut, steps: Sequence[Step], builder: Builder) -> str | None:
+def _leading_up_to(cut: Cut, steps: Sequence[Step], builder: Builder, utterance: str) -> str | None:
     """The checkpoint that new steps are to come before: the last of what is asked for, there already."""
-    words = [w for item in cut.items for w in item.text.split()]
-    if asked_anew(words) or any(s.role not in ("then", "condition") or s.sequel for s in steps):
+    said = [w for w in words(utterance) if w not in (BREAK, COMMA)]
+    if asked_anew(said) or _GOING_ON.intersection(said[:2]):
+        return None
+    if any(s.role not in ("then", "condition") or s.sequel for s in steps):
         return None
     if any(step.when for step in steps[1:]):
         return None

@@ -16,7 +16,7 @@ from polaris_nl.language.interpretation import Interpretation
 from polaris_nl.language.protocol import Language
 from polaris_nl.language.scope import Unclear
 from polaris_nl.language.structure import Builder, Step
-from polaris_nl.language.tokens import PhraseSet, words
+from polaris_nl.language.tokens import BREAK, COMMA, PhraseSet, words
 from polaris_nl.model.formula import Literal
 from polaris_nl.model.text import sentence
 
@@ -76,15 +76,9 @@ class Waiting:
         self, utterance: str, core: Core, program: Automaton, dialogue: Dialogue
     ) -> MeantThen | None:
         """`give it to her wherever she is`, where that waits for something: now it doesn't."""
-        found = (
-            at
-            for at in range(2, len(core.tokens))
-            for phrase in _ANYWAY
-            if core.tokens[at : at + len(phrase)] == phrase
-        )
-        at = next(found, None)
+        said = self._said_anyway(core.tokens)
         try:
-            steps = self._changes.steps(core.tokens[:at], dialogue) if at is not None else []
+            steps = self._changes.steps(said, dialogue) if said else []
         except Unclear:
             return None
         if len(steps) != 1 or steps[0].when or not steps[0].goals:
@@ -98,6 +92,21 @@ class Waiting:
                     self._language, utterance, edits, say, program, dialogue, [arrow.target]
                 )
         return None
+
+    def _said_anyway(self, tokens: tuple[str, ...]) -> tuple[str, ...]:
+        """What is to be done without waiting any more, or () where nothing is."""
+        if tokens[:2] == DO_NOT and tokens[2:3] in (("wait",), ("check",)):
+            # "Don't wait for her answer, fill it straight away."
+            plain = [t for t in tokens if t not in (BREAK, COMMA, "just")]
+            plain = plain[:-2] if plain[-2:] in (["straight", "away"], ["right", "away"]) else plain
+            rests = (plain[at:] for at in range(3, len(plain) - 1))
+            return next((tuple(rest) for rest in rests if self._language.asks_for(rest)), ())
+        for at in range(2, len(tokens)):
+            if any(tokens[at : at + len(phrase)] == phrase for phrase in _ANYWAY):
+                return tokens[:at]
+            if tokens[at] == "whether" and tokens[-2:] == ("or", "not"):
+                return tokens[:at]
+        return ()
 
     def done_then(
         self, utterance: str, core: Core, program: Automaton, dialogue: Dialogue

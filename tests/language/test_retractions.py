@@ -21,7 +21,7 @@ TRAY = "start [(at tray table)"
         ("don't go to the kitchen", f"{TRAY} [(robot-at home) [(not (robot-at kitchen))]]]"),
         (
             "don't go home before you fill the tray",
-            f"{TRAY} [(robot-at home) [(is-full tray) [(robot-at home)]]]]",
+            f"{TRAY} [(is-full tray) [(robot-at home)]]]",
         ),
         (
             "only go home if the resident is in her room",

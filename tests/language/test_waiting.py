@@ -34,6 +34,12 @@ def after(said: str, before: tuple[str, ...]) -> str:
          "start [(robot-at kitchen) [when (person-in mr-brown kitchen): (open fridge)]]"),
         (FRIDGE, "you close it only if it's open and the water bottle is inside",
          "start [when (in water-bottle fridge) & (open fridge): (not (open fridge)) [(robot-at laundry)]]"),
+        (("tell tom bingo is starting", "once he acknowledges fill the tray", "then go home"),
+         "don't wait for his answer, fill it straight away",
+         "start [(alerted-to mr-brown bingo) [(is-full tray) [(robot-at home)]]]"),
+        (("tell tom bingo is starting", "once he acknowledges fill the tray", "then go home"),
+         "don't wait for him", "start [(alerted-to mr-brown bingo) [(is-full tray) [(robot-at home)]]]"),
+        (KITCHEN, "don't open the fridge while i'm in the kitchen", "refused"),
         (FRIDGE, "close the fridge in any case", "start [(not (open fridge)) [(robot-at laundry)]]"),
         (KITCHEN, "then go home only if tom is in the kitchen",
          "start [(robot-at kitchen) [(open fridge) [when (person-in mr-brown kitchen): (robot-at home)]]]"),
@@ -85,6 +91,8 @@ def test_something_else_is_done(before: tuple[str, ...], said: str, program: str
          "start [(open wardrobe) [(has mr-brown blanket) [(not (open wardrobe))]]]"),
         (PAPER_BOOK, "the book goes on the nightstand and the newspaper goes on the coffee table",
          "start [(at newspaper coffee-table) [(at book nightstand)]]"),
+        (PAPER_BOOK, "she's asleep so put the book on the nightstand",
+         "start [(at newspaper desk) [(at book nightstand)]]"),
         (PAPER_BOOK, "put the book on the nightstand",
          "start [(at newspaper desk) [(at book table) [(at book nightstand)]]]"),
         (PAPER_BOOK, "then the book should be on the nightstand",
@@ -118,6 +126,25 @@ def test_what_is_said_of_a_thing_is_no_second_errand(
     ],
 )  # fmt: skip
 def test_things_name_their_steps(before: tuple[str, ...], said: str, program: str) -> None:
+    assert after(said, before) == program
+
+
+@pytest.mark.parametrize(
+    ("before", "said", "program"),
+    [
+        (("put the cup in the cupboard", "then close it"), "put the plate in and then close it",
+         "start [(in cup cupboard) [(in plate cupboard) [(not (open cupboard))]]]"),
+        (("fill the tray", "then bring it to the resident"), "open the fridge before she gets it",
+         "start [(is-full tray) [(open fridge) [(has resident tray)]]]"),
+        (BINGO, "if he dismisses it tell the nurse about bingo and only then go home",
+         f"{TOLD} [when (dismissed bingo): (alerted-to caregiver bingo) [(robot-at home)]]]"),
+        (("go home",), "then fill the tray and go home again",
+         "start [(robot-at home) [(is-full tray) [(robot-at home)]]]"),
+    ],
+)  # fmt: skip
+def test_what_leads_up_to_a_step_comes_before_it(
+    before: tuple[str, ...], said: str, program: str
+) -> None:
     assert after(said, before) == program
 
 
