@@ -91,6 +91,8 @@ def _left_so(goals: Sequence[Goal], program: Automaton) -> tuple[list[Edit], lis
     """Without what would change a thing that is to be left as it is: "leave the wardrobe open"."""
     wrong = {goal.negation for goal in goals if isinstance(goal, Literal)}
     for checkpoint in reversed(list(program.checkpoints.values())):
+        if set(goals).intersection(checkpoint.goals):
+            return None  # So it is in the end.
         kept = tuple(goal for goal in checkpoint.goals if goal not in wrong)
         if kept != checkpoint.goals:
             if kept:

@@ -14,7 +14,7 @@ ORDERING = frozenset((
     "first", "before", "beforehand", "after", "afterwards", "afterward", "only"
 ))  # fmt: skip
 """Words that say in which order; "then" alone goes on with something new."""
-ANEW = frozenset(("again", "once more", "another", "second", "too", "also", "twice"))
+ANEW = frozenset(("again", "another", "second", "too", "also", "twice"))
 """Words that ask for what is there a second time."""
 
 

@@ -74,6 +74,8 @@ def test_what_is_there_waits_or_no_longer_does(
          "start [(alerted-to mr-brown bingo) [when (acknowledged bingo): (has mr-brown tray)]]"),
         (BLANKET, "you can leave the wardrobe open when you're done with it",
          "start [(open wardrobe) [(has resident blanket)]]"),
+        (BLANKET, "leave the wardrobe closed",
+         "start [(open wardrobe) [(has resident blanket) [(not (open wardrobe))]]]"),
     ],
 )  # fmt: skip
 def test_something_else_is_done(before: tuple[str, ...], said: str, program: str) -> None:
