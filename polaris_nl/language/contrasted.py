@@ -14,8 +14,14 @@ from polaris_nl.language.goal_relations import flat
 from polaris_nl.language.mention import Mention
 from polaris_nl.language.protocol import Language
 from polaris_nl.language.scope import Misfit, Unclear
-from polaris_nl.language.tokens import PhraseSet
-from polaris_nl.model.formula import Goal, Imply, Quantified, bind
+from polaris_nl.language.tokens import BREAK, COMMA, PhraseSet, words
+from polaris_nl.model.domain import KIND
+from polaris_nl.model.formula import Goal, Imply, Literal, Quantified, bind
+
+_ONLY = ("only", "just")
+_AROUND = (BREAK, COMMA, "actually", "really", "please", "no", "sorry")
+_MAKE_IT = frozenset(("make", "let", "'s", "us", "it", "that", "this", "please"))
+"""Words before it."""
 
 
 def put_instead(
@@ -70,6 +76,65 @@ def put_instead(
             if edits:
                 return edits, f"{goals_in_words(wanted, language.wording)} instead"
     return None
+
+
+def only_these(
+    language: Language,
+    utterance: str,
+    touched: Sequence[str],
+    program: Automaton,
+    dialogue: Dialogue,
+) -> tuple[list[Edit], str] | None:
+    """Some things in the place of all of their kind: "just the fork", "only the fork, not all the cutlery".
+
+    Args:
+        language: its other parts.
+        utterance: what was said.
+        touched: the steps of the latest edit, which come before the rest.
+        program: the program.
+        dialogue: what was said before.
+
+    Raises:
+        Unclear: a question has to be asked.
+    """
+    spoken = [w for w in words(utterance) if w not in _AROUND]
+    start = next((i for i, word in enumerate(spoken[:6]) if word in _ONLY), None)
+    if start is None or not set(spoken[:start]) <= _MAKE_IT:
+        return None
+    contrast = PhraseSet(language.grammar.common.contrast)
+    ends = (i for i in range(start + 1, len(spoken)) if contrast.length_at(spoken, i))
+    said = spoken[start + 1 : next(ends, len(spoken))]
+    whole = [m for m in language.mentions(said)[0] if m.end == len(said)] if said else []
+    if not whole:
+        return None
+    try:
+        named = language.resolver.meant(whole[0], (), dialogue.scope).entities
+    except Misfit:
+        return None
+    for checkpoint in (*reversed(touched), *reversed(list(program.checkpoints))):
+        there = program.checkpoints[checkpoint].goals
+        for goal in there:
+            if isinstance(goal, Quantified) and (some := _of_its_kind(goal, named, language)):
+                kept = (some if g is goal else (g,) for g in there)
+                goals = tuple(dict.fromkeys(g for group in kept for g in group))
+                edits: list[Edit] = [SetGoals(checkpoint, goals)]
+                return edits, f"only {goals_in_words(some, language.wording)}"
+    return None
+
+
+def _of_its_kind(goal: Quantified, named: Sequence[str], language: Language) -> tuple[Goal, ...]:
+    """What a goal asks of all of a kind, of some that are of that kind; () where one isn't."""
+    body = goal.body
+    if not isinstance(body, Imply) or len(goal.variables) != 1:
+        return ()
+    one = goal.variables[0].name
+    conditions = [bind(body.condition, {one: thing}) for thing in named]
+    fitting = all(
+        isinstance(c, Literal) and c.predicate == KIND and language.world.is_kind(*c.args)
+        for c in conditions
+    )
+    found = [bind(body.conclusion, {one: thing}) for thing in named] if fitting else []
+    return tuple(goal for goal in found if isinstance(goal, Literal))
 
 
 def _spoken_of(language: Language, pronoun: Mention, dialogue: Dialogue) -> Sequence[str]:

@@ -24,7 +24,7 @@ from polaris_nl.language.changes import (
 from polaris_nl.language.choosing import Choosing
 from polaris_nl.language.clauses import pronoun_types
 from polaris_nl.language.conditions import condition_in
-from polaris_nl.language.contrasted import put_instead
+from polaris_nl.language.contrasted import only_these, put_instead
 from polaris_nl.language.cores import AROUND, DO_NOT, NEEDLESS, Core, Cores, trimmed
 from polaris_nl.language.dialogue import Dialogue
 from polaris_nl.language.elsewhere import exchanged_places
@@ -104,6 +104,8 @@ class Corrections:
             return other
         mentions = self._language.mentions(words)
         instead = put_instead(self._language, self._changes, words, touched, program, dialogue)
+        if instead is None:
+            instead = only_these(self._language, utterance, touched, program, dialogue)
         if instead is not None:
             return applied(self._language, utterance, *instead, program, dialogue, touched)
         question: Unclear | None = None
