@@ -19,7 +19,7 @@ MOST = 5
 LEAST = 2
 """Words of a part."""
 _CHANGING = frozenset((
-    "if", "when", "once", "unless", "until", "till", "except", "only", "instead", "before",
+    "if", "when", "once", "while", "unless", "until", "till", "except", "only", "instead", "before",
     "otherwise"
 ))  # fmt: skip
 """Words without which the others would ask for something else."""

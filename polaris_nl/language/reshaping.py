@@ -148,7 +148,7 @@ def moved_behind(program: Automaton, this: str, other: str) -> Reshaped:
         return [MoveCheckpoint(this, other)], say, [this]
     alone: list[Edit] = [RemoveCheckpoint(this)]
     without = apply_all(program, alone)
-    return [*alone, _placed(without, program.checkpoints[this], other)], say, [this]
+    return [*alone, *put_after(without, program.checkpoints[this], other)], say, [this]
 
 
 def moved_before(program: Automaton, this: str, other: str) -> Reshaped:
@@ -173,14 +173,6 @@ def moved_before(program: Automaton, this: str, other: str) -> Reshaped:
     else:
         edits.append(InsertCheckpoint(checkpoint, incoming.id, without.fresh_transition_id()))
     return edits, f"{name} comes before {before} now", [this]
-
-
-def _placed(program: Automaton, checkpoint: Checkpoint, after: str) -> Edit:
-    outgoing = program.outgoing(after)
-    onward = program.fresh_transition_id()
-    if len(outgoing) == 1 and not outgoing[0].when:
-        return InsertCheckpoint(checkpoint, outgoing[0].id, onward)
-    return AddCheckpoint(checkpoint, Transition(onward, after, checkpoint.id))
 
 
 def cut_after(program: Automaton, this: str) -> Reshaped:

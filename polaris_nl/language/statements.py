@@ -161,7 +161,10 @@ class Statements:
                 scope=scope,
             )
             say = steps_in_words(steps, self._language.wording)
-            if builder.instead:
+            if builder.reordered:
+                how = "In another order:" if len(steps) > 1 else "First of all,"
+                say = f"{how} {say[:1].lower()}{say[1:]}"
+            elif builder.instead:
                 goals = [goal for step in steps for goal in step.goals]
                 say = sentence(f"{goals_in_words(goals, self._language.wording)} instead")
             aside = tuple(i.text for i in cut.items if i.role in ("topic", "fact"))

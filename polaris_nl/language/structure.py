@@ -53,6 +53,7 @@ class Builder:
         here: the checkpoint that was edited last, after which the next step goes.
         anchor: the checkpoint at which the latest branch began, for "otherwise".
         instead: what is there was changed, and nothing added.
+        reordered: what is there was put in another order, and nothing added.
     """
 
     world: World
@@ -63,6 +64,7 @@ class Builder:
     edits: list[Edit] = field(default_factory=list)
     touched: list[str] = field(default_factory=list)
     instead: bool = False
+    reordered: bool = False
 
     def add(self, step: Step) -> None:
         """Puts a step into the program.
@@ -96,6 +98,7 @@ class Builder:
         for edit in put_in_order(self.program, order):
             self._edited(edit, order[-1])
         self.touched = [c for c in order if self.edits]
+        self.reordered = True
 
     def change(self, edits: Sequence[Edit], touched: Sequence[str]) -> None:
         """Changes checkpoints that are there; what is said next goes on where it would have gone on."""

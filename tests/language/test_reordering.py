@@ -55,6 +55,16 @@ def test_two_steps_change_places(said: str) -> None:
         (TOLD_THEN_HOME, "swap the first two steps", f"start [{FILL} [{TELL} [{HOME}]]]"),
         (TOLD_THEN_HOME, "do them in reverse order", "refused"),
         (
+            (
+                "fill the tray",
+                "then tell her lunch is ready",
+                "then go home",
+                "if she dismisses it go to the office instead",
+            ),
+            "swap the first two",
+            f"start [{TELL} [{FILL} [{HOME}] [when (dismissed lunchtime): (robot-at office)]]]",
+        ),
+        (
             ("tell her lunch is ready", "then open the fridge", "then fill the tray"),
             "tell her after filling the tray",
             f"start [(open fridge) [{FILL} [{TELL}]]]",
