@@ -7,10 +7,11 @@ from collections.abc import Sequence
 
 from polaris_nl.automaton.automaton import START, Automaton
 from polaris_nl.automaton.edits import Edit, SetGoals
+from polaris_nl.language.generate import goals_in_words
 from polaris_nl.language.goal_relations import says_a_place, thing_placed
 from polaris_nl.language.protocol import Language
 from polaris_nl.language.requests import BE_OR_DO, SUBJECTS
-from polaris_nl.language.reshaping import removed
+from polaris_nl.language.reshaping import Reshaped, removed
 from polaris_nl.language.segment import Cut
 from polaris_nl.language.structure import Step
 from polaris_nl.language.tokens import BREAK, COMMA, words
@@ -32,7 +33,7 @@ _LEFT = frozenset(("leave", "keep"))
 
 def put_elsewhere(
     language: Language, cut: Cut, steps: Sequence[Step], program: Automaton, utterance: str
-) -> tuple[list[Edit], list[str]] | None:
+) -> Reshaped | None:
     """The edits that put goals in the place of those that take the same things elsewhere.
 
     Only what is said of things ("the wine goes on the table"), or for a reason ("she isn't drinking, so bring
@@ -46,7 +47,7 @@ def put_elsewhere(
         utterance: all that was said, of which some may have been passed over.
 
     Returns:
-        The edits and the checkpoints they touch; None where something is new, or said as something to be done.
+        None where something is new, or said as something to be done.
     """
     said = [w for item in cut.items for w in item.text.split()]
     if _NEXT.intersection(said) or said[:1] == ["and"]:
@@ -75,7 +76,7 @@ def put_elsewhere(
         edits.append(SetGoals(checkpoint, goals))
         when = incoming.when if incoming is not None else ()
         edits += language.names.renamed(program, checkpoint, goals, when)
-    return edits, list(changed)
+    return edits, f"{goals_in_words(wanted, language.wording)} instead", list(changed)
 
 
 def exchanged_places(wanted: Sequence[Goal], there: Sequence[Goal]) -> tuple[Goal, ...]:
@@ -87,7 +88,7 @@ def exchanged_places(wanted: Sequence[Goal], there: Sequence[Goal]) -> tuple[Goa
     return tuple(by_thing.get(moved(goal), goal) for goal in there)
 
 
-def _left_so(goals: Sequence[Goal], program: Automaton) -> tuple[list[Edit], list[str]] | None:
+def _left_so(goals: Sequence[Goal], program: Automaton) -> Reshaped | None:
     """Without what would change a thing that is to be left as it is: "leave the wardrobe open"."""
     wrong = {goal.negation for goal in goals if isinstance(goal, Literal)}
     for checkpoint in reversed(list(program.checkpoints.values())):
@@ -96,8 +97,9 @@ def _left_so(goals: Sequence[Goal], program: Automaton) -> tuple[list[Edit], lis
         kept = tuple(goal for goal in checkpoint.goals if goal not in wrong)
         if kept != checkpoint.goals:
             if kept:
-                return [SetGoals(checkpoint.id, kept)], [checkpoint.id]
-            return removed(program, checkpoint.id), []
+                say = f"{checkpoint.name} is without that now"
+                return [SetGoals(checkpoint.id, kept)], say, [checkpoint.id]
+            return removed(program, checkpoint.id), f"{checkpoint.name} is gone", []
     return None
 
 

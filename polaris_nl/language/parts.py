@@ -53,7 +53,6 @@ _ASKING = frozenset(("where", "what", "which", "who", "how", "why", "undo"))
 """Words that a question begins with wherever it stands, and that commands about the program do."""
 _LEADING = frozenset(("if", "when", "once", "unless", "could", "can", "would", "please"))
 """Words that may stand before what is asked for, and belong to it."""
-
 _OPENING = frozenset(
     ("because", "since", "as", "cause", "and", "so", "sorry", "oh", "well", "okay", "right")
 )
@@ -61,7 +60,7 @@ _OPENING = frozenset(
 _REASON = ("because", "cause")
 _NAMING = frozenset(("the", "her", "his", "their", "your", "mine", "who", "which"))
 _DUTY = frozenset((
-    "should", "must", "shall", "let", "please", "you", "needn't", "want", "wants", "rather", "like", "prefer",
+    "should", "must", "shall", "let", "please", "you", "want", "wants", "rather", "like", "prefer",
     "stay", "stays", "belongs", "goes"
 ))  # fmt: skip
 """Words of what is asked for after all."""

@@ -9,7 +9,7 @@ from polaris_nl.automaton.automaton import START, Automaton
 from polaris_nl.language.cores import DO_NOT
 from polaris_nl.language.dialogue import Dialogue, Pending
 from polaris_nl.language.elsewhere import put_elsewhere
-from polaris_nl.language.generate import goals_in_words, steps_in_words
+from polaris_nl.language.generate import steps_in_words
 from polaris_nl.language.interpretation import Interpretation, Question, Reading
 from polaris_nl.language.protocol import Language
 from polaris_nl.language.reading import steps_of
@@ -164,9 +164,8 @@ class Statements:
             if builder.reordered:
                 how = "In another order:" if len(steps) > 1 else "First of all,"
                 say = f"{how} {say[:1].lower()}{say[1:]}"
-            elif builder.instead:
-                goals = [goal for step in steps for goal in step.goals]
-                say = sentence(f"{goals_in_words(goals, self._language.wording)} instead")
+            elif builder.changed:
+                say = sentence(builder.changed)
             aside = tuple(i.text for i in cut.items if i.role in ("topic", "fact"))
             meant = Interpretation(utterance, "applied", say, tuple(builder.edits), aside=aside)
             yield _Tried(cut, cut.cost, say, meant, after)

@@ -52,7 +52,7 @@ class Builder:
     Attributes:
         here: the checkpoint that was edited last, after which the next step goes.
         anchor: the checkpoint at which the latest branch began, for "otherwise".
-        instead: what is there was changed, and nothing added.
+        changed: what became of what is there, in words, where nothing was added.
         reordered: what is there was put in another order, and nothing added.
     """
 
@@ -63,7 +63,7 @@ class Builder:
     anchor: str | None = None
     edits: list[Edit] = field(default_factory=list)
     touched: list[str] = field(default_factory=list)
-    instead: bool = False
+    changed: str = ""
     reordered: bool = False
 
     def add(self, step: Step) -> None:
@@ -100,12 +100,12 @@ class Builder:
         self.touched = [c for c in order if self.edits]
         self.reordered = True
 
-    def change(self, edits: Sequence[Edit], touched: Sequence[str]) -> None:
+    def change(self, edits: Sequence[Edit], say: str, touched: Sequence[str]) -> None:
         """Changes checkpoints that are there; what is said next goes on where it would have gone on."""
         self.program = apply_all(self.program, edits)
         self.edits += edits
         self.touched = [*touched]
-        self.instead = True
+        self.changed = say
 
     def _otherwise(self, step: Step) -> None:
         source = self.anchor if self.anchor is not None else self.here
