@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 from polaris_nl.speech.activity import BEFORE_S, KEPT_S, LONGEST_S, PAUSE_S, Cutter
@@ -94,6 +95,7 @@ class Hearer:
         self._clock = clock
         self._recent: deque[bytes] = deque(maxlen=round(BEFORE_S * 10))
         self._called = False
+        self._beside = ThreadPoolExecutor(1, "hearing-freely")
         self.use(ears)
 
     def use(self, ears: Ears) -> None:
@@ -132,6 +134,7 @@ class Hearer:
             return
         if starts:
             self._attentive = attentive
+            self._ears.quick.finish()
             yield Started()
         self._feed(cut.sound)
         self._ears.quick.feed(
@@ -176,10 +179,7 @@ class Hearer:
     def _ended(self, pause_s: float) -> Iterator[Heard]:
         ended = self._clock()
         audio, quick, called = bytes(self._audio), self._acted, self._called
-        self._ears.quick.finish()
-        phrased = self._ears.phrased.finish() if self._attentive else Decoded()
-        second = self._ears.free if self._attentive else None
-        free = second.finish() if second is not None else None
+        phrased, free = self._finished()
         self._called = False
         self._cutter.end()
         self._begin()
@@ -191,12 +191,15 @@ class Hearer:
             yield Heard(spoken, quick, pause_s, ended, self._clock() - ended)
 
     def _drop(self) -> None:
-        self._ears.quick.finish()
-        if self._attentive:
-            self._ears.phrased.finish()
-            if self._ears.free is not None:
-                self._ears.free.finish()
+        self._finished()
         self._begin()
+
+    def _finished(self) -> tuple[Decoded, Decoded | None]:
+        """What was heard of the phrases, and freely; both at once, for somebody waits for the answer."""
+        if not self._attentive:
+            return Decoded(), None
+        free = self._beside.submit(self._ears.free.finish) if self._ears.free is not None else None
+        return self._ears.phrased.finish(), free.result() if free is not None else None
 
 
 def _ending(words: Sequence[str], weight: Weight | None) -> float:

@@ -12,7 +12,15 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 from polaris_nl.speech.agreement import BREAK, difference, disagreement
-from polaris_nl.speech.doubt import Case, Means, Reading, doubts, is_sure, opposite
+from polaris_nl.speech.doubt import (
+    SURE_MARGIN,
+    Case,
+    Means,
+    Reading,
+    doubts,
+    is_sure,
+    opposite,
+)
 from polaris_nl.speech.lexicon import SoundAlikes
 from polaris_nl.speech.readings import ASKING_COST, Found, gain_of, placed, readings
 from polaris_nl.speech.recogniser import UNKNOWN, Spoken
@@ -162,6 +170,8 @@ def _sensible(chosen: Sequence[str], piece: Spoken, weigh: Weigh, ways: Ways) ->
     """Readings that make sense, as many as are looked at."""
     found: list[Found] = []
     for rank, reading in enumerate(itertools.islice(readings(piece, ways.alikes), TRIED)):
+        if not _matters(reading, rank, found, piece, ways):
+            continue
         if one := placed(chosen, reading, piece.free, RANK_COST * rank, weigh):
             found.append(replace(one, rank=rank))
         whole = bool(found) and found[-1].pieces[-1] == piece.free and found[-1].cost < ASKING_COST
@@ -181,6 +191,19 @@ def _sensible(chosen: Sequence[str], piece: Spoken, weigh: Weigh, ways: Ways) ->
         mended = _repaired(chosen, piece, weigh, ways.repairer)
         return [mended] if mended is not None else []
     return found
+
+
+def _matters(reading: str, rank: int, found: Sequence[Found], piece: Spoken, ways: Ways) -> bool:
+    """Whether a reading could still be the one that most speaks for, or cast a doubt on those that make sense.
+
+    To understand a long sentence takes longer than all else here, and most readings are far behind.
+    """
+    if not found or RANK_COST * rank + difference(reading, piece.free) < min(f.cost for f in found):
+        return True
+    gain, *gains = (
+        gain_of(piece, text, ways.alikes) for text in (reading, *(f.reading for f in found))
+    )
+    return gain is None or any(other is None or other - gain < SURE_MARGIN for other in gains)
 
 
 def _repaired(

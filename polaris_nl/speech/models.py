@@ -56,9 +56,12 @@ _UNCUT = {f"endpoint.rule{n}.min-trailing-silence": "60.0" for n in range(1, 5)}
     "endpoint.rule5.min-utterance-length": "120.0"
 }
 """Where a sentence ends is not for the model to say: it can't know what is still missing from it."""
-NARROW = {"beam": "10.0", "lattice-beam": "2.0", "max-active": "3000", **_UNCUT}
+_SOON = {"frames-per-chunk": "10"}
+"""A tenth of a second at a time, not two: the last word shows in the partial result before the pause that
+ends the sentence, for a fifth more work."""
+NARROW = {"beam": "10.0", "lattice-beam": "2.0", "max-active": "3000", **_UNCUT, **_SOON}
 """The model's own search, for the second opinion."""
-WIDE = {"beam": "15.0", "lattice-beam": "8.0", "max-active": "7000", **_UNCUT}
+WIDE = {"beam": "15.0", "lattice-beam": "8.0", "max-active": "7000", **_UNCUT, **_SOON}
 """Wider search, for phrases: far fewer errors in noise."""
 
 Progress = Callable[[int, int], None]

@@ -200,3 +200,17 @@ def test_without_likelihoods_nothing_is_gained() -> None:
         1.0,
     )
     assert utterance([spoken("go home")], when(lambda t: True)).gain is None
+
+
+def test_readings_that_are_far_behind_are_not_even_understood() -> None:
+    asked: list[str] = []
+
+    def weigh(text: str) -> Weight:
+        asked.append(text)
+        return Weight.CHANGING
+
+    texts = ("go home", "go hum", "go comb", "go phone")
+    piece = Spoken(texts, AUDIO, "go homer phone", (9.0, 7.0, 3.0, 2.0))
+    # One about as likely could cast a doubt on the first; one nearer to what was heard freely could win.
+    utterance([piece], weigh, means=str)
+    assert set(asked) == {"go home", "go hum", "go phone"}
