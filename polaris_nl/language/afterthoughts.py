@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 
 from polaris_nl.automaton.automaton import START, Automaton, Checkpoint, Transition
-from polaris_nl.automaton.edits import AddCheckpoint
+from polaris_nl.automaton.edits import AddCheckpoint, Edit, apply
 from polaris_nl.language.goal_relations import flat, says_a_place, thing_placed
 from polaris_nl.language.naming import Names
 from polaris_nl.language.reshaping import Reshaped, conditional
@@ -86,6 +86,28 @@ def spared(program: Automaton, this: str, when: tuple[Literal, ...], names: Name
         return conditional(program, this, both, f"{name} is left out then")
     if any(t.conditional == set(when) for t in program.outgoing(incoming.source)):
         raise EditError(f"What happens then is said already; change or remove {name}.")
-    end = Checkpoint(program.fresh_checkpoint_id(), names.checkpoint((), when, program), ())
-    arrow = Transition(program.fresh_transition_id(), incoming.source, end.id, when)
-    return [AddCheckpoint(end, arrow)], f"{name} is left out then", [this]
+    rest = _straight_on(program, this)
+    if rest is None:
+        rest, name = [()], f"{name} and what comes after it"
+    edits: list[Edit] = []
+    source, wait = incoming.source, when
+    for goals in rest or [()]:
+        new = Checkpoint(
+            program.fresh_checkpoint_id(), names.checkpoint(goals, wait, program), tuple(goals)
+        )
+        arrow = Transition(program.fresh_transition_id(), source, new.id, wait)
+        edits.append(AddCheckpoint(new, arrow))
+        program, source, wait = apply(program, edits[-1]), new.id, ()
+    left_out = "is" if name == program.checkpoints[this].name else "are"
+    return edits, f"{name} {left_out} left out then", [this]
+
+
+def _straight_on(program: Automaton, this: str) -> list[tuple[Goal, ...]] | None:
+    """The goals of the steps that come after a step, in order; None where they part or wait."""
+    found: list[tuple[Goal, ...]] = []
+    while outgoing := program.outgoing(this):
+        if len(outgoing) > 1 or outgoing[0].when:
+            return None
+        this = outgoing[0].target
+        found.append(program.checkpoints[this].goals)
+    return found

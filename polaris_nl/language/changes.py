@@ -12,10 +12,11 @@ from polaris_nl.automaton.edits import (
     apply_all,
 )
 from polaris_nl.language.afterthoughts import limited, narrowed, spared, step_about
-from polaris_nl.language.conditions import condition_in
+from polaris_nl.language.conditions import condition_in, span_of
 from polaris_nl.language.connecting import connected
 from polaris_nl.language.dialogue import Dialogue, Latest
 from polaris_nl.language.edited_steps import NOT_START, going_on, latest_step, pair
+from polaris_nl.language.elsewhere import taken_there
 from polaris_nl.language.generate import goals_in_words, steps_in_words
 from polaris_nl.language.goal_relations import flat
 from polaris_nl.language.interpretation import Interpretation
@@ -65,6 +66,7 @@ _BY_DOING = ("start", "by")
 _PLACING = ("before", "after", "before-that", "at-start")
 """Intents that put a step where it belongs, new or not."""
 NO_STEPS = "There are no steps yet; say what the robot should achieve first."
+NOTHING_OF_THAT = "That isn't asked for, so there is nothing to leave out."
 NOTHING_CHANGES = "It is like that already; nothing changes."
 MeantThen = tuple[Interpretation, Dialogue]
 
@@ -191,6 +193,10 @@ class Changes:
             return conditional(program, this, when, steps_in_words([step], self._language.wording))
         if intent in ("replace", "also", "together"):
             goals, _ = self.goals(match.tokens, slots.get("g"), dialogue)
+            if intent == "replace":
+                start, end = span_of(slots["g"])
+                there = program.checkpoints[this].goals
+                goals = taken_there(self.steps, match.tokens[start:end], goals, there, dialogue)
             words = goals_in_words(goals, self._language.wording)
             if intent == "together":
                 if self._tells(match.tokens, match.slots["g"]):

@@ -17,6 +17,7 @@ from polaris_nl.language.another_condition import another_condition
 from polaris_nl.language.changes import (
     NO_STEPS,
     NOTHING_CHANGES,
+    NOTHING_OF_THAT,
     Changes,
     MeantThen,
     steps_there,
@@ -27,7 +28,8 @@ from polaris_nl.language.conditions import condition_in
 from polaris_nl.language.contrasted import only_these, put_instead
 from polaris_nl.language.cores import AROUND, DO_NOT, NEEDLESS, Core, Cores, trimmed
 from polaris_nl.language.dialogue import Dialogue
-from polaris_nl.language.elsewhere import exchanged_places
+from polaris_nl.language.elsewhere import exchanged_places, taken_there
+from polaris_nl.language.excepting import Excepting
 from polaris_nl.language.exchange import exchanged, used_in, without
 from polaris_nl.language.generate import goals_in_words, steps_in_words
 from polaris_nl.language.goal_relations import flat
@@ -48,7 +50,6 @@ from polaris_nl.model.text import listed, sentence
 WHAT_INSTEAD = "I don't see what should be changed; say what you meant, or undo."
 _MORE = ("also", "too", "as well", "again")
 """Words of a sentence that adds to what was said, however it starts."""
-NOTHING_OF_THAT = "That isn't asked for, so there is nothing to leave out."
 _PLEASE, _INSTEAD = "please", "instead"
 _LIMITS = frozenset(("while", "whilst", "unless"))
 _ON = ("and", "but", "then", "please")
@@ -64,7 +65,9 @@ class Corrections:
         self._references = references
         common = language.grammar.common
         intents = common.of_kind("correction")
-        self.core = Cores(language.grammar.common, references.verbs).core
+        cores = Cores(language.grammar.common, references.verbs)
+        self.core = cores.core
+        self._exceptions = Excepting(language, changes, cores)
         rest = [intent for intent in intents if intent.name not in (*AROUND, NEEDLESS)]
         self._patterns = Patterns(rest, references, common.numbers)
         self._choosing = Choosing(language)
@@ -99,6 +102,9 @@ class Corrections:
         words = core.words
         if core.strength and (again := self._again.edited(utterance, words, program, dialogue)):
             return again
+        excepted = self._exceptions.excepted(utterance, core.tokens, program, dialogue)
+        if excepted is not None:
+            return excepted
         other = self._conditions.other_way(utterance, words, touched, program, dialogue)
         if other is not None:
             return other
@@ -323,7 +329,9 @@ class Corrections:
         steps = self._changes.steps(core.tokens, dialogue, bool(elses)) if replaces else []
         if not steps:
             return None
-        step = steps[0]
+        latest = program.checkpoints[touched[-1]].goals
+        goals = taken_there(self._changes.steps, core.tokens, steps[0].goals, latest, dialogue)
+        step = replace(steps[0], goals=goals)
         target = place_of(step.goals, touched, program)
         if step.role == "else" and len(steps) == 1 and len(elses) == 1:
             step, target = replace(step, role="then"), elses[0]

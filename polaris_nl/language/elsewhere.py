@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 from polaris_nl.automaton.automaton import START, Automaton
 from polaris_nl.automaton.edits import Edit, SetGoals
+from polaris_nl.language.dialogue import Dialogue
 from polaris_nl.language.generate import goals_in_words
 from polaris_nl.language.goal_relations import says_a_place, thing_placed
 from polaris_nl.language.protocol import Language
@@ -27,6 +29,10 @@ _VERBS_TOLD = BE_OR_DO - {"can", "could", "would", "do", "will", "want", "need",
     "might",
 }
 """Verbs by which a reason is told."""
+_TO = frozenset(("to", "into", "onto", "in", "on", "at"))
+"""Words that a place begins with."""
+_TAKING = ("bring", "put")
+"""Verbs by which a thing is taken to a place."""
 _LEFT = frozenset(("leave", "keep"))
 """Verbs by which something stays as it is."""
 
@@ -86,6 +92,33 @@ def exchanged_places(wanted: Sequence[Goal], there: Sequence[Goal]) -> tuple[Goa
     if None in by_thing or len(by_thing) < len(wanted) or not set(by_thing) <= things:
         return tuple(wanted)
     return tuple(by_thing.get(moved(goal), goal) for goal in there)
+
+
+def taken_there(
+    read: Callable[[Sequence[str], Dialogue], Sequence[Step]],
+    tokens: Sequence[str],
+    goals: tuple[Goal, ...],
+    there: Sequence[Goal],
+    dialogue: Dialogue,
+) -> tuple[Goal, ...]:
+    """`to the kitchen`, in the place of "bring it to the desk": the thing is to be there, not the robot.
+
+    Args:
+        read: reads steps.
+        tokens: what was said.
+        goals: what it asks for by itself.
+        there: what was asked for.
+        dialogue: what was said before.
+    """
+    things = [thing for thing in map(moved, there) if isinstance(thing, str)]
+    if tokens[0] not in _TO or len(things) != 1 or any(map(moved, goals)):
+        return goals
+    dialogue = replace(dialogue, scope=dialogue.scope.after(things))
+    for verb in _TAKING:
+        steps = read((verb, "it", *tokens), dialogue)
+        if len(steps) == 1 and [moved(goal) for goal in steps[0].goals] == things:
+            return steps[0].goals
+    return goals
 
 
 def _left_so(goals: Sequence[Goal], program: Automaton) -> Reshaped | None:

@@ -227,7 +227,10 @@ class _Reader:
         if (
             previous is not None
             and not self.done.new_step
-            and (stands_behind(self.items[self.at :], self._joined) or self._postposed)
+            and (
+                stands_behind(self.items[self.at :], self._joined, self._is_over(previous, when))
+                or self._postposed
+            )
         ):
             self._attach(previous, when, mark)
         elif mark == "unless":
@@ -241,6 +244,31 @@ class _Reader:
             self._when, self._how = when, mark
             self._waits = self._sequel or mark == "until"
         self.done.new_step, self._sequel = True, False
+
+    def _is_over(self, previous: Step, when: Sequence[Literal]) -> bool:
+        """Whether a condition is for what stands before it, and "then" goes on: "shut it if it's open, then A".
+
+        Else "if she dismisses it then go home" stands in front of what it is for. What would undo the condition
+        can't come before it; and a comma parts it from "then", unless it may come of what was asked for.
+        """
+        if self._how_said == "unless":
+            return True
+        done = flat(previous.goals)
+        if any(x.negation in done for x in when):
+            return True
+        start = self.at - 1
+        while start and self.items[start].mark != "if":
+            start -= 1
+        parted = [
+            i.mark for i in (*self.items[start - 1 : start], *self.items[self.at : self.at + 1])
+        ]
+        about = {arg for goal in done for arg in goal.args}
+        return (
+            self._how_said == "if"
+            and parted[-1:] == ["comma"]
+            and parted[0] != "comma"
+            and not all(set(x.args) <= about for x in when)
+        )
 
     # "Open it or close it", "..., but open it first"
 

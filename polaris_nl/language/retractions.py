@@ -54,3 +54,18 @@ def negated(
         if kept != there:
             return [RemoveCheckpoint(checkpoint)], f"{name} is gone"
     return None
+
+
+def waits(program: Automaton, checkpoint: str, when: Sequence[Literal]) -> bool:
+    """Whether a step is done only where something holds."""
+    return any(set(when) <= arrow.conditional for arrow in program.path(checkpoint))
+
+
+def never_then(program: Automaton, checkpoint: str, when: Sequence[Literal]) -> bool:
+    """Whether a step isn't on the way that is taken where something holds."""
+    path = program.path(checkpoint)
+    for arrow in path:
+        for beside in program.outgoing(arrow.source):
+            if beside.id != arrow.id and beside.conditional == set(when):
+                return True
+    return False

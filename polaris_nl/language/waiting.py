@@ -14,6 +14,8 @@ from polaris_nl.language.exchange import used_in
 from polaris_nl.language.generate import goals_in_words, steps_in_words
 from polaris_nl.language.interpretation import Interpretation
 from polaris_nl.language.protocol import Language
+from polaris_nl.language.reshaping import removed
+from polaris_nl.language.retractions import never_then, waits
 from polaris_nl.language.scope import Unclear
 from polaris_nl.language.structure import Builder, Step
 from polaris_nl.language.tokens import BREAK, COMMA, PhraseSet, words
@@ -60,6 +62,12 @@ class Waiting:
         first, *rest = steps
         if any(step.role != "else" for step in rest):
             return None
+        alike = [c for c, x in program.checkpoints.items() if set(x.goals) == set(first.goals)]
+        others = [c for c in alike if never_then(program, c, first.when)]
+        if others and any(waits(program, c, first.when) for c in alike):
+            say = f"{goals_in_words(first.goals, self._language.wording)} only then"
+            edits = [edit for c in others for edit in removed(program, c)]
+            return applied(self._language, utterance, edits, say, program, dialogue, ())
         for arrow in reversed(list(program.transitions.values())):
             there = set(program.checkpoints[arrow.target].goals)
             if there == set(first.goals) and arrow.conditional < set(first.when):
@@ -68,7 +76,8 @@ class Waiting:
                 for step in rest:
                     builder.add(step)
                 say = steps_in_words(steps, self._language.wording)
-                edits, touched = [limit, *builder.edits], [arrow.target, *builder.touched]
+                edits = [limit, *builder.edits]
+                touched = [arrow.target, *builder.touched]
                 return applied(self._language, utterance, edits, say, program, dialogue, touched)
         return None
 
