@@ -28,6 +28,7 @@ from polaris_nl.language.conditions import condition_in
 from polaris_nl.language.contrasted import only_these, put_instead
 from polaris_nl.language.cores import AROUND, DO_NOT, NEEDLESS, Core, Cores, trimmed
 from polaris_nl.language.dialogue import Dialogue
+from polaris_nl.language.each_way import each_way
 from polaris_nl.language.elsewhere import exchanged_places, taken_there
 from polaris_nl.language.excepting import Excepting
 from polaris_nl.language.exchange import exchanged, used_in, without
@@ -105,6 +106,9 @@ class Corrections:
         excepted = self._exceptions.excepted(utterance, core.tokens, program, dialogue)
         if excepted is not None:
             return excepted
+        always = each_way(self._language, self._changes, utterance, program, dialogue)
+        if always is not None:
+            return always
         other = self._conditions.other_way(utterance, words, touched, program, dialogue)
         if other is not None:
             return other

@@ -72,6 +72,10 @@ class Builder:
         Raises:
             Misfit: it is a second "otherwise".
         """
+        there = self._there_already(step)
+        if there is not None:
+            self.here = there
+            return
         asked = self.program.checkpoints[self.here].goals
         again = step.done or (step.role == "then" and bool(step.goals) and not step.when)
         if again and set(step.goals) <= set(asked):
@@ -82,6 +86,21 @@ class Builder:
             self._branch(step)
         else:
             self._next(step)
+
+    def _there_already(self, step: Step) -> str | None:
+        """Where what is spoken of as done is done, or what is to come of it, if that is in one place."""
+        doing = step.goals if step.done else step.when
+        found = [c.id for c in self.program.checkpoints.values() if set(doing) <= set(c.goals)]
+        if not doing or len(found) != 1 or step.sequel:
+            return None
+        if step.done:
+            return found[0]
+        # "Go home once she has it", where it is handed over on the way home.
+        onward = (c for c in self.program.subtree(found[0])[1:] if step.goals)
+        return next((c for c in onward if set(step.goals) == set(self._goals(c))), None)
+
+    def _goals(self, checkpoint: str) -> Sequence[Goal]:
+        return self.program.checkpoints[checkpoint].goals
 
     def put_in_front(self, steps: Sequence[Step], other: str) -> None:
         """Puts steps in front of a checkpoint, behind what was waited for there, and goes on after that one."""
