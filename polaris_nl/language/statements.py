@@ -194,6 +194,7 @@ class Statements:
         if elsewhere is not None:
             builder.change(*elsewhere)
             return steps, scope
+        builder.whether = any(i.mark == "if" and i.text.split()[-1] == "if" for i in cut.items)
         for step in steps:
             builder.add(step)
         return steps, scope

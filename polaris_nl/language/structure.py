@@ -54,6 +54,7 @@ class Builder:
         anchor: the checkpoint at which the latest branch began, for "otherwise".
         changed: what became of what is there, in words, where nothing was added.
         reordered: what is there was put in another order, and nothing added.
+        whether: it is said with "if" that something is done where something else holds, not with "once".
     """
 
     world: World
@@ -65,6 +66,7 @@ class Builder:
     touched: list[str] = field(default_factory=list)
     changed: str = ""
     reordered: bool = False
+    whether: bool = False
 
     def add(self, step: Step) -> None:
         """Puts a step into the program.
@@ -95,6 +97,8 @@ class Builder:
             return None
         if step.done:
             return found[0]
+        if self.whether:
+            return None
         # "Go home once she has it", where it is handed over on the way home.
         onward = (c for c in self.program.subtree(found[0])[1:] if step.goals)
         return next((c for c in onward if set(step.goals) == set(self._goals(c))), None)
