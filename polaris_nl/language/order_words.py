@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 from polaris_nl.language.clauses import Clause
 from polaris_nl.language.segment import Item
@@ -59,18 +59,18 @@ def condition_follows(rest: Sequence[Item]) -> bool:
     return bool(rest) and rest[0].role == "condition"
 
 
-def stands_behind(rest: Sequence[Item], joined: bool, over: bool = False) -> bool:
+def stands_behind(rest: Sequence[Item], joined: bool, going_on: Collection[str] = ()) -> bool:
     """Whether a condition stands behind what it is for: "go home if she dismisses it".
 
     Args:
         rest: what follows the condition.
         joined: whether "and" stands before it: "do A, and if it's clean after that do B".
-        over: whether a "then" behind it goes on, as it does in "close it if it's open, then go home".
+        going_on: the marks behind it, or "", that go on: "then" in "shut it if it's open, then go home".
     """
     rest = [i for i in rest if i.mark != "comma"]
     if not rest or rest[0].mark in ("break", "else", "if", "until", "unless"):
         return True
-    return (goes_on(rest[0]) or (over and rest[0].mark == "then")) and not joined
+    return (goes_on(rest[0]) or (rest[0].mark or "") in going_on) and not joined
 
 
 def but_before(items: Sequence[Item]) -> bool:

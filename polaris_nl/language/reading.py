@@ -228,7 +228,11 @@ class _Reader:
             previous is not None
             and not self.done.new_step
             and (
-                stands_behind(self.items[self.at :], self._joined, self._is_over(previous, when))
+                stands_behind(
+                    self.items[self.at :],
+                    self._joined and "only" not in self._how_said.split(),
+                    self._going_on(previous, when),
+                )
                 or self._postposed
             )
         ):
@@ -245,30 +249,27 @@ class _Reader:
             self._waits = self._sequel or mark == "until"
         self.done.new_step, self._sequel = True, False
 
-    def _is_over(self, previous: Step, when: Sequence[Literal]) -> bool:
-        """Whether a condition is for what stands before it, and "then" goes on: "shut it if it's open, then A".
+    def _going_on(self, previous: Step, when: Sequence[Literal]) -> Sequence[str]:
+        """The marks behind a condition that go on where it is for what stands before it.
 
-        Else "if she dismisses it then go home" stands in front of what it is for. What would undo the condition
-        can't come before it; and a comma parts it from "then", unless it may come of what was asked for.
+        "Then" goes on in "close it if it's open, then go home". Else, "if she dismisses it then go home" stands
+        in front of what it is for. What would undo the condition can't come before it; and a comma parts it
+        from "then", unless it may come of what was asked for.
         """
-        if self._how_said == "unless":
-            return True
         done = flat(previous.goals)
         if any(x.negation in done for x in when):
-            return True
+            return ("then", "and", "")
         start = self.at - 1
-        while start and self.items[start].mark != "if":
+        while start and self.items[start].mark not in ("if", "unless"):
             start -= 1
-        parted = [
-            i.mark for i in (*self.items[start - 1 : start], *self.items[self.at : self.at + 1])
-        ]
+        set_off = [i.mark for i in self.items[start - 1 : start]] == ["comma"]
+        said = self._how_said.split()
+        if "only" in said or (said == ["unless"] and not set_off):
+            return ("then", "and")
+        parted = [i.mark for i in self.items[self.at : self.at + 1]] == ["comma"]
         about = {arg for goal in done for arg in goal.args}
-        return (
-            self._how_said == "if"
-            and parted[-1:] == ["comma"]
-            and parted[0] != "comma"
-            and not all(set(x.args) <= about for x in when)
-        )
+        comes_of_it = all(set(x.args) <= about for x in when)
+        return ("then",) if said == ["if"] and parted and not set_off and not comes_of_it else ()
 
     # "Open it or close it", "..., but open it first"
 
@@ -350,7 +351,10 @@ class _Reader:
         return tuple(goals)
 
     def _attach(self, previous: Step, when: tuple[Literal, ...], mark: str) -> None:
-        if mark == "unless" and previous.when:
+        if mark == "unless" and previous.forbidden and not previous.when:
+            # "Don't open it unless she comes" is "if she comes, open it".
+            self.done.steps[-1] = Step(previous.forbidden, when, "condition")
+        elif mark == "unless" and previous.when:
             # "When she comes, give it to her unless she has it."
             if len(when) > 1:
                 raise Misfit("Say that in two sentences: what to wait for, and when not to do it.")
