@@ -101,6 +101,10 @@ class Corrections:
         dialogue: Dialogue,
     ) -> MeantThen | None:
         words = core.words
+        if core.strength and words[:1] == ["about"] and len(words) > 1:
+            thing = " ".join(words[1:])
+            reason = f'What about {thing}? Say what should be done, or "leave out {thing}".'
+            return self._language.refused(utterance, reason), dialogue
         if core.strength and (again := self._again.edited(utterance, words, program, dialogue)):
             return again
         excepted = self._exceptions.excepted(utterance, core.tokens, program, dialogue)

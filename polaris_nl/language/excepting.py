@@ -7,16 +7,18 @@ from dataclasses import dataclass, replace
 
 from polaris_nl.automaton.automaton import START, Automaton
 from polaris_nl.automaton.edits import Edit, RemoveCheckpoint, SetGoals
-from polaris_nl.language.afterthoughts import spared
+from polaris_nl.language.afterthoughts import limited, narrowed, spared
 from polaris_nl.language.changes import NOTHING_OF_THAT, Changes, MeantThen, steps_there
 from polaris_nl.language.conditions import condition_in
 from polaris_nl.language.cores import DO_NOT, Cores, trimmed
 from polaris_nl.language.dialogue import Dialogue
+from polaris_nl.language.generate import steps_in_words
 from polaris_nl.language.protocol import Language
 from polaris_nl.language.reshaping import Reshaped, removed
 from polaris_nl.language.retractions import never_then, waits
 from polaris_nl.language.scope import Misfit, Unclear
 from polaris_nl.language.structure import Step
+from polaris_nl.language.tokens import words
 from polaris_nl.language.verbs import gerund
 from polaris_nl.language.waiting import applied
 from polaris_nl.model.errors import EditError
@@ -27,10 +29,15 @@ _IF = (("if",), ("when",), ("once",), ("whenever",), ("in", "case"), ("as", "lon
 """Words in front of a condition."""
 _SKIP = ("skip",)
 """What a step is named behind to be left out."""
-_UNLESS = "unless"
+_LEFT_OUT = (
+    (*DO_NOT, "bother", "with"), (*DO_NOT, "bother"), DO_NOT, _SKIP, ("leave", "out"), ("omit",),
+    ("need", "for"),  # "No need for the glasses if ...", of which "no" is known to be a correction.
+)  # fmt: skip
+"""Words in front of what isn't to be done."""
+_UNLESS, _ONLY = "unless", "only"
 _STATES = frozenset(("leave", "let", "be", "keep", "have", "hold", "stay", "remain"))
 """What isn't to be so is a goal: "if the fridge is open, don't leave it open"."""
-_SAID = frozenset(("not", *_SKIP, _UNLESS))
+_SAID = frozenset(("not", "need", "leave", "omit", *_SKIP, _UNLESS))
 """Of these words, one is said with each exception."""
 
 
@@ -67,14 +74,26 @@ class Excepting:
         Raises:
             EditError: it asks for more than what isn't wanted, or what happens then is said already.
         """
-        if not _SAID.intersection(tokens):
+        only = _ONLY in words(utterance)  # It may be passed over in front.
+        if not only and not _SAID.intersection(tokens):
             return None
         if tuple(tokens[:2]) == DO_NOT and _UNLESS in tokens:
             # "Don't go home unless she dismisses it."
-            only = ["only", *tokens[2:]]
-            only[only.index(_UNLESS)] = "if"
-            meant, after = self._language.interpret(" ".join(only), program, dialogue)
+            limit = [_ONLY, *tokens[2:]]
+            limit[limit.index(_UNLESS)] = "if"
+            meant, after = self._language.interpret(" ".join(limit), program, dialogue)
             return replace(meant, utterance=utterance), after
+        for condition, rest in self._limits(tokens) if only else ():
+            whole = (0, len(condition))
+            when = condition_in(self._language, condition, whole, dialogue.scope)
+            named = self._named(rest, program, dialogue) if when else None
+            if named is not None:
+                incoming = program.incoming(named)
+                when = narrowed(incoming.when if incoming is not None else (), when)
+                step = Step(program.checkpoints[named].goals, when, "condition")
+                say = steps_in_words([step], self._language.wording)
+                edits, say, touched = limited(program, named, when, say)
+                return applied(self._language, utterance, edits, say, program, dialogue, touched)
         for when, unwanted in self._read(tokens, program, dialogue):
             found = unwanted or []
             inside = [u for u in found if waits(program, u.checkpoint, when)]
@@ -97,6 +116,13 @@ class Excepting:
                 raise EditError(f"{NOTHING_OF_THAT} {steps_there(program)}")
         return None
 
+    def _limits(self, tokens: Sequence[str]) -> Iterator[tuple[Sequence[str], Sequence[str]]]:
+        """`bring the tray only if she is in`, of which too little is said to be steps, parted."""
+        for condition, rest in _parted(tokens):
+            bare = [word for word in rest if word != _ONLY]
+            if bare and not self._steps(bare, Dialogue()):
+                yield condition, bare
+
     def _read(
         self, tokens: Sequence[str], program: Automaton, dialogue: Dialogue
     ) -> Iterator[tuple[tuple[Literal, ...], list[_Unwanted] | None]]:
@@ -106,27 +132,20 @@ class Excepting:
             if len(steps) == 2 and steps[1].role == "else" and not steps[0].goals:
                 yield steps[0].when, _asked_for(program, steps[1].goals) or None
             return
-        for condition, rest in self._parted(tokens):
+        for condition, said in _parted(tokens):
+            rest = self._left_out(said)
             whole = (0, len(condition))
             when = condition_in(self._language, condition, whole, dialogue.scope) if rest else ()
             if when:
                 yield when, self._unwanted(rest, program, dialogue)
 
-    def _parted(self, tokens: Sequence[str]) -> Iterator[tuple[Sequence[str], Sequence[str]]]:
-        """Ways to part what isn't to be done from the condition."""
-        for at in range(len(tokens)):
-            size = next((len(w) for w in _IF if tuple(tokens[at : at + len(w)]) == w), 0)
-            if size and at:
-                yield trimmed(tokens[at + size :]), self._left_out(tokens[:at])
-            elif size:
-                for end in range(size + 1, len(tokens) - 1):
-                    yield trimmed(tokens[size:end]), self._left_out(tokens[end:])
-
     def _left_out(self, tokens: Sequence[str]) -> Sequence[str]:
         """What isn't to be done, without "do not" and the like; () where that isn't said."""
-        said = self._cores.core(trimmed(tokens)).tokens
-        sizes = (len(words) for words in (DO_NOT, _SKIP) if said[: len(words)] == words)
-        return said[next(sizes, len(said)) :]
+        for said in (tuple(trimmed(tokens)), self._cores.core(trimmed(tokens)).tokens):
+            size = next((len(x) for x in _LEFT_OUT if said[: len(x)] == x), 0)
+            if size:
+                return said[size:]
+        return ()
 
     def _unwanted(
         self, rest: Sequence[str], program: Automaton, dialogue: Dialogue
@@ -137,13 +156,20 @@ class Excepting:
         asked_for = _asked_for(program, steps[0].forbidden) if steps else []
         if asked_for:
             return asked_for
-        for words in ((gerund(rest[0]), *rest[1:]), tuple(rest)):
-            said = " ".join((*_SKIP, *words))
-            meant, _ = self._language.interpret(said, program, dialogue)
-            removed = [e.checkpoint for e in meant.edits if isinstance(e, RemoveCheckpoint)]
-            if len(removed) == 1:
-                return [_Unwanted(c, frozenset(program.checkpoints[c].goals)) for c in removed]
+        named = self._named(rest, program, dialogue)
+        if named is not None:
+            return [_Unwanted(named, frozenset(program.checkpoints[named].goals))]
         return None if rest[0] in _STATES else []
+
+    def _named(self, said: Sequence[str], program: Automaton, dialogue: Dialogue) -> str | None:
+        """The step that words name which don't say all of it: "bring the tray", wherever to."""
+        for named in ((gerund(said[0]), *said[1:]), tuple(said)):
+            text = " ".join((*_SKIP, *named))
+            meant, _ = self._language.interpret(text, program, dialogue)
+            gone = [e.checkpoint for e in meant.edits if isinstance(e, RemoveCheckpoint)]
+            if len(gone) == 1:
+                return gone[0]
+        return None
 
     def _steps(self, tokens: Sequence[str], dialogue: Dialogue) -> Sequence[Step]:
         try:
@@ -172,6 +198,17 @@ class Excepting:
                 f"{found.name} asks for more than that; say what should be done then instead."
             )
         return spared(program, this.checkpoint, when, self._language.names)
+
+
+def _parted(tokens: Sequence[str]) -> Iterator[tuple[Sequence[str], Sequence[str]]]:
+    """Ways to part a condition from the rest."""
+    for at in range(len(tokens)):
+        size = next((len(w) for w in _IF if tuple(tokens[at : at + len(w)]) == w), 0)
+        if size and at:
+            yield trimmed(tokens[at + size :]), tokens[:at]
+        elif size:
+            for end in range(size + 1, len(tokens) - 1):
+                yield trimmed(tokens[size:end]), tokens[end:]
 
 
 def _asked_for(program: Automaton, goals: Sequence[Goal]) -> list[_Unwanted]:

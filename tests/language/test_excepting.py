@@ -17,6 +17,11 @@ LUNCH = (
 )
 PAPER = ("give her the newspaper", "then go home")
 FRIDGE = ("open the fridge", "then go home")
+GLASSES = ("tell tom bingo is starting", "then bring the glasses to tom")
+LOUNGE = (
+    "start [(alerted-to mr-brown bingo) [(has mr-brown glasses)] "
+    "[when (person-in mr-brown recreation-area): -]]"
+)
 TOLD = "start [(alerted-to resident lunchtime)"
 BROUGHT = "[when (acknowledged lunchtime): (at tray table) & (is-full tray) [(robot-at home)]]"
 SPARED = (
@@ -56,6 +61,15 @@ def after(said: str, before: tuple[str, ...] = ()) -> str:
         (LUNCH, "don't tell her that lunch is ready if she's in the kitchen",
          f"{TOLD} {BROUGHT} [when (dismissed lunchtime): (robot-at home)]] "
          "[when (person-in resident kitchen): -]"),
+        (GLASSES, "don't bother with the glasses if he's in the lounge", LOUNGE),
+        (GLASSES, "no need for the glasses if he's in the lounge", LOUNGE),
+        (GLASSES, "leave out the glasses if he's in the lounge", LOUNGE),
+        # Of what isn't said whole, too, it is known which step is meant.
+        (GLASSES, "only bring the glasses if he's in the kitchen",
+         "start [(alerted-to mr-brown bingo) [when (person-in mr-brown kitchen): (has mr-brown glasses)]]"),
+        (LUNCH, "bring the tray only if she's in her room",
+         f"{TOLD} [when (acknowledged lunchtime) & (person-in resident room-1): (at tray table) & "
+         "(is-full tray) [(robot-at home)]] [when (dismissed lunchtime): (robot-at home)]]"),
         # What isn't to be so is a goal.
         (("go home",), "if the fridge is open don't leave it open",
          "start [(robot-at home) [when (open fridge): (not (open fridge))]]"),
@@ -76,6 +90,15 @@ def test_what_isn_t_done_then_anyway_is_said_to_be_so(said: str) -> None:
         program = apply_all(program, meant.edits)
     meant, _ = language.interpret(said, program, dialogue)
     assert (meant.outcome, meant.say) == ("answer", "That isn't done then anyway; nothing changes.")
+
+
+def test_a_changed_mind_is_asked_what_instead() -> None:
+    language, program, dialogue = understanding("care-home"), Automaton(), None
+    meant, dialogue = language.interpret("give her the newspaper", program, dialogue)
+    program = apply_all(program, meant.edits)
+    meant, _ = language.interpret("i changed my mind about the newspaper", program, dialogue)
+    assert meant.outcome == "refused"
+    assert meant.say.startswith("What about the newspaper? Say what should be done, or")
 
 
 @pytest.mark.parametrize(
