@@ -6,6 +6,7 @@ from collections.abc import Collection, Sequence
 
 from polaris_nl.language.clauses import Clause
 from polaris_nl.language.segment import Item
+from polaris_nl.model.formula import Literal
 
 FIRST = ("first", "first of all", "beforehand", "before that", "before")
 LATER = (
@@ -59,18 +60,53 @@ def condition_follows(rest: Sequence[Item]) -> bool:
     return bool(rest) and rest[0].role == "condition"
 
 
-def stands_behind(rest: Sequence[Item], joined: bool, going_on: Collection[str] = ()) -> bool:
+def stands_behind(rest: Sequence[Item], joined: bool, onward: Collection[str] = ()) -> bool:
     """Whether a condition stands behind what it is for: "go home if she dismisses it".
 
     Args:
         rest: what follows the condition.
         joined: whether "and" stands before it: "do A, and if it's clean after that do B".
-        going_on: the marks behind it, or "", that go on: "then" in "shut it if it's open, then go home".
+        onward: the marks behind it, or "", that go on: "then" in "shut it if it's open, then go home".
     """
     rest = [i for i in rest if i.mark != "comma"]
     if not rest or rest[0].mark in ("break", "else", "if", "until", "unless"):
         return True
-    return (goes_on(rest[0]) or (rest[0].mark or "") in going_on) and not joined
+    return (goes_on(rest[0]) or (rest[0].mark or "") in onward) and not joined
+
+
+def going_on(
+    items: Sequence[Item],
+    at: int,
+    how: str,
+    asked: Sequence[Literal],
+    when: Sequence[Literal],
+) -> Sequence[str]:
+    """The marks behind a condition that go on where it is for what stands before it.
+
+    "Then" goes on in "close it if it's open, then go home". Else, "if she dismisses it then go home" stands in
+    front of what it is for. What would undo the condition can't come before it; and a comma parts it from
+    "then", unless it may come of what was asked for.
+
+    Args:
+        items: the utterance.
+        at: where the condition ends in it.
+        how: the words that the condition begins with.
+        asked: what is asked for before it.
+        when: the condition.
+    """
+    if any(x.negation in asked for x in when):
+        return ("then", "and", "")
+    start = at - 1
+    while start and items[start].mark not in ("if", "unless"):
+        start -= 1
+    set_off = [i.mark for i in items[start - 1 : start]] == ["comma"]
+    said = how.split()
+    if "only" in said or (said == ["unless"] and not set_off):
+        return ("then", "and")
+    parted = [i.mark for i in items[at : at + 1]] == ["comma"]
+    about = {arg for goal in asked for arg in goal.args}
+    comes_of_it = all(set(x.args) <= about for x in when)
+    return ("then",) if said == ["if"] and parted and not set_off and not comes_of_it else ()
 
 
 def but_before(items: Sequence[Item]) -> bool:

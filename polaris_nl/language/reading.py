@@ -18,6 +18,7 @@ from polaris_nl.language.order_words import (
     all_postposed,
     but_before,
     condition_follows,
+    going_on,
     in_an_order,
     is_otherwise,
     says_only_names,
@@ -231,7 +232,7 @@ class _Reader:
                 stands_behind(
                     self.items[self.at :],
                     self._joined and "only" not in self._how_said.split(),
-                    self._going_on(previous, when),
+                    going_on(self.items, self.at, self._how_said, flat(previous.goals), when),
                 )
                 or self._postposed
             )
@@ -248,28 +249,6 @@ class _Reader:
             self._when, self._how = when, mark
             self._waits = self._sequel or mark == "until"
         self.done.new_step, self._sequel = True, False
-
-    def _going_on(self, previous: Step, when: Sequence[Literal]) -> Sequence[str]:
-        """The marks behind a condition that go on where it is for what stands before it.
-
-        "Then" goes on in "close it if it's open, then go home". Else, "if she dismisses it then go home" stands
-        in front of what it is for. What would undo the condition can't come before it; and a comma parts it
-        from "then", unless it may come of what was asked for.
-        """
-        done = flat(previous.goals)
-        if any(x.negation in done for x in when):
-            return ("then", "and", "")
-        start = self.at - 1
-        while start and self.items[start].mark not in ("if", "unless"):
-            start -= 1
-        set_off = [i.mark for i in self.items[start - 1 : start]] == ["comma"]
-        said = self._how_said.split()
-        if "only" in said or (said == ["unless"] and not set_off):
-            return ("then", "and")
-        parted = [i.mark for i in self.items[self.at : self.at + 1]] == ["comma"]
-        about = {arg for goal in done for arg in goal.args}
-        comes_of_it = all(set(x.args) <= about for x in when)
-        return ("then",) if said == ["if"] and parted and not set_off and not comes_of_it else ()
 
     # "Open it or close it", "..., but open it first"
 
