@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Iterator, Sequence
+from collections.abc import Collection, Container, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from polaris_nl.automaton.automaton import START, Automaton
@@ -17,7 +17,7 @@ from polaris_nl.language.refusals import Refusals
 from polaris_nl.language.reordering import asked_anew, in_front_of, says_order, there_already
 from polaris_nl.language.repair import Repairs
 from polaris_nl.language.scope import Misfit, Scope, Unclear
-from polaris_nl.language.segment import Cut
+from polaris_nl.language.segment import Cut, Item
 from polaris_nl.language.structure import Builder, Step
 from polaris_nl.language.tokens import BREAK, COMMA, phrase, words
 from polaris_nl.model.text import sentence
@@ -29,6 +29,8 @@ ONLY_WHILE = (
 )
 _GOING_ON = frozenset(("then", "next", "afterwards", "after"))
 """Words by which steps go on after the latest one."""
+_ORDER = frozenset(("before", "after"))
+"""Words by which what is to be done is put in order."""
 MOST_REPAIRED = 60
 """Words up to which self-repairs are looked for."""
 QUESTION_COST = 1.5
@@ -75,7 +77,7 @@ class Statements:
     ) -> tuple[Interpretation, Dialogue]:
         """Reads tokens as steps of the program."""
         cuts = self._language.cuts(tokens)
-        good = _understood(cuts)
+        good = _understood(cuts, self._language.verbs.imperatives)
         for banned, reason in self._refused_phrases:
             if _says(tokens, banned) and not (good and _only_told(good[0], banned)):
                 return self._language.refused(utterance, reason, (" ".join(banned),)), dialogue
@@ -112,7 +114,10 @@ class Statements:
         """What the first of several candidates means that is understood, or None."""
         for tokens in candidates:
             best = self._best(
-                utterance, _understood(self._language.cuts(tokens)), program, dialogue
+                utterance,
+                _understood(self._language.cuts(tokens), self._language.verbs.imperatives),
+                program,
+                dialogue,
             )
             if best is not None:
                 return best
@@ -276,9 +281,25 @@ def _leading_up_to(cut: Cut, steps: Sequence[Step], builder: Builder, utterance:
     return found
 
 
-def _understood(cuts: Sequence[Cut]) -> list[Cut]:
+def _understood(cuts: Sequence[Cut], verbs: Collection[str]) -> list[Cut]:
     """The cuts that account for every word and ask for something."""
-    return [cut for cut in cuts if not cut.unknown and _says_something(cut)]
+    return [
+        cut
+        for cut in cuts
+        if not cut.unknown
+        and _says_something(cut)
+        and not any(_is_in_order(item, verbs) for item in cut.items)
+    ]
+
+
+def _is_in_order(item: Item, verbs: Collection[str]) -> bool:
+    """Whether what seems only named is put in order: "before that put the knife in", "before the plate"."""
+    first, *rest = item.text.split()
+    if item.role != "topic" or first not in _ORDER:
+        return False
+    named = item.mention.parts if item.mention is not None else ()
+    alone = any(thing.candidates and thing.end - thing.start == len(rest) for thing in named)
+    return alone or bool(set(rest).intersection(verbs))
 
 
 def _says_something(cut: Cut) -> bool:

@@ -196,3 +196,17 @@ def test_what_is_said_against_something_takes_its_place(
     before: tuple[str, ...], said: str, meant: str
 ) -> None:
     assert Context(understanding("care-home"), before).understood(said)[1] == meant
+
+
+@pytest.mark.parametrize(
+    ("said", "meant"),
+    [
+        ("close the drawer, but before that put the knife in", "refused"),  # There is no knife.
+        ("close the drawer, but before that put the fork in",
+         "start [(in fork drawer) [(not (open drawer))]]"),
+        ("take the cup to anna before the wine", "refused"),
+        ("put the cup in the sink before the soup gets cold", "start [(at cup sink)]"),
+    ],
+)  # fmt: skip
+def test_what_is_put_in_order_is_no_remark(said: str, meant: str) -> None:
+    assert Context(understanding("dinner-party")).understood(said)[1] == meant
