@@ -20,8 +20,25 @@ _EACH_WAY = (
     ("either", "way"), ("in", "either", "case"), ("in", "both", "cases"), ("in", "each", "case"),
     ("in", "any", "case"), ("in", "all", "cases"), ("in", "every", "case"), ("both", "times"),
 )  # fmt: skip
+"""Words by which something is to be done on every branch."""
 _WHATEVER = (("whatever",), ("whichever",), ("however",), ("regardless",), ("no", "matter"))
 """Words in front of what doesn't matter: "whatever she says"."""
+_MATTERS = frozenset(
+    (
+        "happens",
+        "says",
+        "say",
+        "does",
+        "do",
+        "answers",
+        "answer",
+        "replies",
+        "decides",
+        "chooses",
+        "wants",
+    )
+)
+"""Words that end what doesn't matter; "whatever is on the table" is something to be brought."""
 _MOST = 6
 """Words of what doesn't matter."""
 _AT_LAST = (
@@ -68,8 +85,9 @@ def _behind_it(said: Sequence[str]) -> Iterator[Sequence[str]]:
     for phrase in _EACH_WAY:
         if tuple(said[: len(phrase)]) == phrase:
             yield _bare(said[len(phrase) :])
-    if _matters_not(said):
-        yield from (_bare(said[at:]) for at in range(2, min(_MOST, len(said) - 1)))
+    for at in range(2, min(_MOST, len(said) - 1)):
+        if _matters_not(said[:at]):
+            yield _bare(said[at:])
 
 
 def _before_it(said: Sequence[str]) -> Iterator[Sequence[str]]:
@@ -83,8 +101,9 @@ def _before_it(said: Sequence[str]) -> Iterator[Sequence[str]]:
 
 
 def _matters_not(tokens: Sequence[str]) -> bool:
-    """Whether tokens begin with "whatever" or the like."""
-    return any(tuple(tokens[: len(phrase)]) == phrase for phrase in _WHATEVER)
+    """Whether tokens are "whatever she says" or the like."""
+    begins = any(tuple(tokens[: len(phrase)]) == phrase for phrase in _WHATEVER)
+    return begins and tokens[-1] in _MATTERS
 
 
 def _bare(tokens: Sequence[str]) -> Sequence[str]:

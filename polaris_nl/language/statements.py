@@ -199,7 +199,8 @@ class Statements:
         if elsewhere is not None:
             builder.change(*elsewhere)
             return steps, scope
-        builder.whether = any(i.mark == "if" and i.text.split()[-1] == "if" for i in cut.items)
+        whether = any(i.mark == "if" and i.text.split()[-1] == "if" for i in cut.items)
+        builder.anew = whether or asked_anew(words(utterance))
         for step in steps:
             builder.add(step)
         return steps, scope

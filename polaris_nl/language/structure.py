@@ -54,7 +54,7 @@ class Builder:
         anchor: the checkpoint at which the latest branch began, for "otherwise".
         changed: what became of what is there, in words, where nothing was added.
         reordered: what is there was put in another order, and nothing added.
-        whether: it is said with "if" that something is done where something else holds, not with "once".
+        anew: what is there may be asked for a second time: "again" is said, or "if" rather than "once".
     """
 
     world: World
@@ -66,7 +66,7 @@ class Builder:
     touched: list[str] = field(default_factory=list)
     changed: str = ""
     reordered: bool = False
-    whether: bool = False
+    anew: bool = False
 
     def add(self, step: Step) -> None:
         """Puts a step into the program.
@@ -97,7 +97,7 @@ class Builder:
             return None
         if step.done:
             return found[0]
-        if self.whether:
+        if self.anew:
             return None
         # "Go home once she has it", where it is handed over on the way home.
         onward = (c for c in self.program.subtree(found[0])[1:] if step.goals)

@@ -56,6 +56,13 @@ def test_what_ends_so_already_stays_and_one_way_is_each_way(
 
 
 @pytest.mark.parametrize(
+    "said", ["go to the kitchen and whatever is on the table", "whatever is on the table go home"]
+)
+def test_a_thing_of_any_kind_is_no_way(said: str) -> None:
+    assert after(said, BINGO).count("robot-at") < 2
+
+
+@pytest.mark.parametrize(
     ("said", "program"),
     [
         ("once you've given her the newspaper tell her bingo is starting",
@@ -63,6 +70,8 @@ def test_what_ends_so_already_stays_and_one_way_is_each_way(
         ("when you give her the newspaper tell her bingo is starting",
          f"start [(has resident newspaper) [(alerted-to resident bingo) [{HOME}]]]"),
         ("go home once she has it", f"start [(has resident newspaper) [{HOME}]]"),
+        ("go home again once she has it",
+         f"start [(has resident newspaper) [{HOME} [when (has resident newspaper): {HOME}]]]"),
         ("once she's in her room go home",
          f"start [(has resident newspaper) [{HOME} [when (person-in resident room-1): {HOME}]]]"),
     ],
